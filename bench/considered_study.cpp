@@ -85,7 +85,7 @@ const std::vector<ForeignEffect> kEffects{
     {"valve_dead_band", 0.01, true, [](ForeignRig& r, double s) { r.dead_band_v = s; }},
     {"coulomb_friction", 10.0, true, [](ForeignRig& r, double s) { r.friction_n = s; }},
     {"laminar_leakage", 3.9e-12, true, [](ForeignRig& r, double s) { r.laminar_m3_per_s_pa = s; }},
-    {"kp", 0.24, false, [](ForeignRig& r, double s) { r.kp_error_v_per_m = s; }},
+    {"kp", 0.6, false, [](ForeignRig& r, double s) { r.kp_error_v_per_m = s; }},
     {"kd", 3e-3, false, [](ForeignRig& r, double s) { r.kd_error_v_s_per_m = s; }},
     {"ki", 2.4, true, [](ForeignRig& r, double s) { r.integral_v_per_m_s = s; }},
     {"total_volume", 2.47e-6, true, [](ForeignRig& r, double s) { r.hose_volume_m3 = s; }},
@@ -101,7 +101,9 @@ const std::vector<ForeignEffect> kEffects{
     {"stribeck_friction", 10.0, true, [](ForeignRig& r, double s) { r.breakaway_n = s; }},
     {"sample_time", 1e-3, true,
      [](ForeignRig& r, double s) { r.controller_tick_s = 1e-5 * std::round(1e5 * s); }},
-    {"loop_gain", 2e-3, false, [](ForeignRig& r, double s) { r.loop_gain = s; }}};
+    {"loop_gain", 2e-3, false, [](ForeignRig& r, double s) { r.loop_gain = s; }},
+    {"trigger", 0.1e-3, false, [](ForeignRig& r, double s) { r.delay_s -= s; }},
+    {"valve_underlap", 0.01, true, [](ForeignRig& r, double s) { r.underlap_v = s; }}};
 
 /// Effects that are not in the catalogue. The detectable size is computed by scaling the size given
 /// here.
@@ -134,7 +136,6 @@ const std::vector<ForeignEffect> kOthers{
      [](ForeignRig& r, double s) { r.valve_curve = s; }},
     {"a valve whose gain falls with its opening", 0.02, false,
      [](ForeignRig& r, double s) { r.valve_curve = -s; }},
-    {"underlap of the spool", 0.005, true, [](ForeignRig& r, double s) { r.underlap_v = s; }},
     {"a valve of limited rate, over full command", 0.003, true,
      [](ForeignRig& r, double s) { r.slew_v_per_s = r.limit_v / s; }},
     {"hum in the supply", 0.01, false, [](ForeignRig& r, double s) { r.supply_ripple = s; }},
@@ -186,7 +187,6 @@ const std::vector<ForeignEffect> kOthers{
        r.sensor_in_loop = true;
        r.sensor_hysteresis_m = s;
      }},
-    {"a record that begins early", 0.0003, true, [](ForeignRig& r, double s) { r.delay_s = -s; }},
     {"a supply line that resonates", 0.02, true, [](ForeignRig& r, double s) { r.line_drop = s; }},
     {"samples that are off", 0.001, true, [](ForeignRig& r, double s) { r.spike_m = s; }},
     {"a delay of one record", 0.0003, true, [](ForeignRig& r, double s) { r.delay_s = s; }, true},

@@ -68,10 +68,17 @@ std::vector<SizedQuantity> effect_names(model::PlantKind plant) {
   for (const std::string_view key : keys) {
     const int index = model::parameter_index(plant, key);
     if (index < 0) continue;
+    // The friction of a joint includes that of its cylinder.
+    if (plant == model::PlantKind::linkage &&
+        (key == "coulomb_friction" || key == "stribeck_friction"))
+      continue;
     // In this plant, null leakage is the same term as a laminar leak.
     if (plant == model::PlantKind::load_pressure && key == "valve_null_leakage") continue;
     names.push_back({std::string(key), unit_of(plant, index)});
   }
+  if (model::parameter_index(plant, "transport_delay") >= 0) names.push_back({kTriggerKey, "s"});
+  if (model::parameter_index(plant, "valve_dead_band") >= 0)
+    names.push_back({"valve_underlap", "V"});
   names.push_back({"supply_sag", "1"});
   names.push_back({"loop_gain", "1"});
   const bool turns = plant == model::PlantKind::linkage;

@@ -2,7 +2,9 @@
 
 #include <array>
 #include <limits>
+#include <optional>
 #include <span>
+#include <string>
 #include <string_view>
 
 #include "metrics/agreement.hpp"
@@ -46,10 +48,28 @@ void Agreement::describe(Self& self, const Visit& visit) {
   for (const MetricSpec& metric : kMetrics) visit(metric.name.data(), self.*metric.value);
 }
 
+/// Returns null if there is no metric of this name.
+constexpr const MetricSpec* find_metric(std::string_view name) {
+  for (const MetricSpec& metric : kMetrics)
+    if (metric.name == name) return &metric;
+  return nullptr;
+}
+
 /// Value of a metric if simulation and measurement are identical.
 constexpr double ideal(const MetricSpec& metric) {
   if (!metric.higher_is_better) return 0.0;
   return metric.unit == "%" ? 100.0 : 1.0;
 }
+
+/// Returns true if a score is at least as good as a bound.
+constexpr bool keeps(const MetricSpec& metric, double score, double bound) {
+  return metric.higher_is_better ? score >= bound : score <= bound;
+}
+
+/// Writes a score with enough digits to show its distance from the best value 1 and on which side
+/// of its limit it is: "0.99987", "0.98996" beside a limit of 0.99. Other scores have four
+/// significant digits.
+std::string score_text(const MetricSpec& metric, double score,
+                       const std::optional<double>& limit = {});
 
 }  // namespace rigcal::metrics

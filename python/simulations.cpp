@@ -228,7 +228,7 @@ void bind_simulations(py::module_& module, CampaignClass& campaign) {
           py::arg("signals") = py::none(), R"(Signals over time, by matplotlib.
 
 Args:
-    signals: names such as "position_m"; None: position and reference
+    signals: names such as "position_m"; None: the position, or the angle of a joint
 
 Returns:
     the Figure)")

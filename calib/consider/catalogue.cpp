@@ -60,11 +60,16 @@ constexpr double kUsualCommand_v = 10.0;
 /// Limits of the plausible lags and delays, which follow from the sampling interval.
 constexpr double kLeastLag_s = 0.05e-3;
 constexpr double kMostLag_s = 0.5e-3;
+/// Plausible time between the start of the drive and that of the record, as a fraction of the
+/// sampling interval, and its limits.
+constexpr double kAheadShare = 0.1;
+constexpr double kLeastAhead_s = 0.02e-3;
+constexpr double kMostAhead_s = 0.1e-3;
 /// Typical range of controller periods.
 constexpr double kShortestPeriod_s = 0.1e-3;
 constexpr double kLongestPeriod_s = 1e-3;
-/// Number of times that the play of a valve is recomputed from the resulting command.
-constexpr int kPlayRounds = 2;
+/// Number of times that the error of a spool is recomputed from the resulting command.
+constexpr int kSpoolRounds = 2;
 
 /// An effect that matters changes an output by at least a ten-thousandth of its peak. This
 /// tolerance resolves a hundredth of such a change.
@@ -109,6 +114,12 @@ constexpr std::array kCatalogue{
                  [](const RigScale& rig) {
                    return EffectSize{lag_of(0.5, rig), "half a sampling interval"};
                  }},
+    CatalogueRow{"trigger", EffectKind::parameter, false, "drive ahead of its record",
+                 [](const RigScale& rig) {
+                   return EffectSize{
+                       std::clamp(kAheadShare * rig.sample_s, kLeastAhead_s, kMostAhead_s),
+                       "a tenth of a sampling interval"};
+                 }},
     CatalogueRow{"valve_offset", EffectKind::parameter, false, "null shift of the valve",
                  [](const RigScale& rig) {
                    return EffectSize{1e-3 * rig.command_v, "0.1 % of full command"};
@@ -117,6 +128,7 @@ constexpr std::array kCatalogue{
                  [](const RigScale& rig) {
                    return EffectSize{1e-3 * rig.command_v, "0.1 % of full command"};
                  }},
+    CatalogueRow{"valve_underlap", EffectKind::underlap, true, "underlap of the spool", valve_play},
     CatalogueRow{"valve_hysteresis", EffectKind::valve_play, true, "hysteresis of the valve",
                  valve_play},
     CatalogueRow{"coulomb_friction", EffectKind::parameter, true, "friction of the seals",
@@ -157,7 +169,7 @@ constexpr std::array kCatalogue{
                  }},
     CatalogueRow{"kp", EffectKind::parameter, false, "error of the proportional gain",
                  [](const RigScale& rig) {
-                   return EffectSize{2e-3 * rig.kp, "0.2 % of its value"};
+                   return EffectSize{5e-3 * rig.kp, "0.5 % of its value"};
                  }},
     CatalogueRow{"kd", EffectKind::parameter, false, "error of the derivative gain",
                  [](const RigScale& rig) {
@@ -355,14 +367,23 @@ bool is_compared(const Problem& problem, Channel channel) {
 
 bool is_curved(std::string_view key) {
   return key == "coulomb_friction" || key == "joint_friction" || key == "valve_dead_band" ||
-         key == "pilot_dead_band" || key == "stribeck_friction" || key.ends_with("_hysteresis");
+         key == "pilot_dead_band" || key == "valve_underlap" || key == "stribeck_friction" ||
+         key.ends_with("_hysteresis");
 }
 
 /// Returns true if a key belongs to the kind of valve that the rig does not have (voltage-driven or
 /// pilot-operated).
 bool is_of_other_valve(std::string_view key, bool pilot) {
   if (key.starts_with("pilot_")) return !pilot;
-  return pilot && (key == "valve_dead_band" || key == "valve_offset" || key == "valve_hysteresis");
+  return pilot && (key == "valve_dead_band" || key == "valve_underlap" || key == "valve_offset" ||
+                   key == "valve_hysteresis");
+}
+
+/// Returns the key of the parameter that describes an effect. A drive that is ahead of its record
+/// has a negative delay, and an underlap is a negative overlap.
+std::string_view parameter_of(std::string_view key) {
+  if (key == "trigger") return "transport_delay";
+  return key == "valve_underlap" ? "valve_dead_band" : key;
 }
 
 bool is_volume(std::string_view key) {
@@ -381,9 +402,9 @@ bool is_of_controller(std::string_view key, const model::FeedbackRow& loop) {
 }
 
 /// Returns true if an effect is an error in a value that the model already contains: hoses add to a
-/// volume, and converters change a gain.
+/// volume, converters change a gain, and a trigger changes a delay.
 bool changes_value(std::string_view key, const model::FeedbackRow& loop) {
-  return is_volume(key) || key == loop.kp || key == loop.kd;
+  return is_volume(key) || key == loop.kp || key == loop.kd || key == "trigger";
 }
 
 /// Returns true if the model already includes the effect, or if its size is given elsewhere: the
@@ -479,9 +500,12 @@ std::vector<Effect> possible_effects(const Problem& problem, std::span<const dou
     effect.curved = is_curved(key);
     const auto channel = sensor_channel(key);
     if (channel && !is_compared(problem, *channel)) continue;
-    if (row.kind == EffectKind::parameter || row.kind == EffectKind::sampling) {
-      effect.index = model::parameter_index(plant, key);
+    if (row.kind == EffectKind::parameter || row.kind == EffectKind::sampling ||
+        row.kind == EffectKind::underlap) {
+      const std::string_view parameter = parameter_of(key);
+      effect.index = model::parameter_index(plant, parameter);
       if (is_in_model(problem, key, effect.index)) continue;
+      if (parameter != key) effect.sign = -1.0;
     }
     effect.range = row.kind == EffectKind::supply_sag ? rig.flow_m3_per_s : rig.travel_m;
     if (channel == Channel::angle) {
@@ -545,12 +569,40 @@ Eigen::VectorXd with_play(const Eigen::VectorXd& x, double half_width) {
   return y;
 }
 
-/// Returns the error in the spool position if the spool follows its signal with play.
+/// How a spool departs from its signal [V or Pa].
+struct SpoolShape {
+  double play = 0.0;      ///< half-width within which the signal turns without moving the spool
+  double underlap = 0.0;  ///< half-width within which the spool opens twice as far
+
+  bool is_exact() const { return play == 0.0 && underlap == 0.0; }
+};
+
+/// Returns the error in the spool position.
 model::Signal spool_error(std::span<const double> time_s, const Eigen::VectorXd& signal,
-                          double half_width, std::span<const model::SampledPeriod> periods) {
-  const Eigen::VectorXd error = with_play(signal, half_width) - signal;
+                          const SpoolShape& shape, std::span<const model::SampledPeriod> periods) {
+  const Eigen::VectorXd played = with_play(signal, shape.play);
+  const Eigen::VectorXd error =
+      played - signal + played.cwiseMax(-shape.underlap).cwiseMin(shape.underlap);
   return repeating_line(time_s, {error.data(), static_cast<std::size_t>(error.size())}, periods,
                         Reverses::yes);
+}
+
+/// Simulates a rig whose delay may be negative, as that of a drive that is ahead of its record. The
+/// readings are then those of later times.
+model::Simulation simulated_ahead(const model::Rig& rig, const model::ParameterValues& values,
+                                  const std::vector<int>& free,
+                                  const model::SimulationInputs& inputs,
+                                  std::span<const double> times_s,
+                                  const std::vector<Output>& outputs,
+                                  const model::SimulationOptions& options) {
+  const double ahead_s = -values["transport_delay"];
+  if (!(ahead_s > 0.0))
+    return model::simulate(rig, values, free, inputs, times_s, outputs, options);
+  model::ParameterValues without = values;
+  without.set("transport_delay", 0.0);
+  std::vector<double> later_s(times_s.begin(), times_s.end());
+  for (double& t : later_s) t += ahead_s;
+  return model::simulate(rig, without, free, inputs, later_s, outputs, options);
 }
 
 /// @param least_tolerance  kSecantTolerance, or kTickingTolerance for a sampled controller
@@ -632,19 +684,22 @@ OutputsWith outputs_with(const Problem& problem, std::size_t condition, std::spa
   };
   double sag = 0.0;
   const Effect* line = nullptr;
-  double play = 0.0;
+  SpoolShape shape;
   double loop_gain = 0.0;
   std::size_t sampling = effects.size();
   for (std::size_t e = 0; e < effects.size(); ++e) {
     if (size_of(e) == 0.0) continue;
     const int index = effects[e].index;
     if (effects[e].kind == EffectKind::parameter) {
-      values.set(index, values.value[static_cast<std::size_t>(index)] + size_of(e));
+      values.set(index,
+                 values.value[static_cast<std::size_t>(index)] + effects[e].sign * size_of(e));
     } else if (effects[e].kind == EffectKind::supply_sag) {
       sag = size_of(e);
       line = &effects[e];
     } else if (effects[e].kind == EffectKind::valve_play) {
-      play = size_of(e);
+      shape.play = size_of(e);
+    } else if (effects[e].kind == EffectKind::underlap) {
+      shape.underlap = size_of(e);
     } else if (effects[e].kind == EffectKind::sampling) {
       sampling = e;
     } else if (effects[e].kind == EffectKind::loop_gain) {
@@ -658,22 +713,22 @@ OutputsWith outputs_with(const Problem& problem, std::size_t condition, std::spa
     std::vector<Output> outputs = data.outputs;
     const auto simulated = [&](const model::SimulationInputs& inputs,
                                const std::vector<int>& columns) {
-      return model::simulate(data.rig, at, columns, inputs, data.fit_times(), outputs, with);
+      return simulated_ahead(data.rig, at, columns, inputs, data.fit_times(), outputs, with);
     };
-    if (line == nullptr && play == 0.0) return simulated(driven, rows);
+    if (line == nullptr && shape.is_exact()) return simulated(driven, rows);
     outputs.insert(outputs.end(), {Output::servo_flow, valve_drive(at)});
     model::SimulationInputs inputs = driven;
     const auto periods = periods_of(inputs, data.fit_times());
     model::Simulation simulation = simulated(inputs, {});
-    const int rounds = play != 0.0 ? kPlayRounds : 1;
+    const int rounds = shape.is_exact() ? 1 : kSpoolRounds;
     for (int round = 1; round <= rounds && simulation.ok(); ++round) {
       if (line != nullptr && round == 1) {
         inputs.supply_pressure_pa = sagging_supply(*line, at, data.fit_times(),
                                                    simulation.outputs.col(channels), sag, periods);
       }
-      if (play != 0.0) {
+      if (!shape.is_exact()) {
         inputs.spool_error =
-            spool_error(data.fit_times(), simulation.outputs.col(channels + 1), play, periods);
+            spool_error(data.fit_times(), simulation.outputs.col(channels + 1), shape, periods);
       }
       simulation = simulated(inputs, round == rounds ? rows : std::vector<int>());
     }
@@ -750,7 +805,7 @@ std::vector<Eigen::MatrixXd> effect_changes(const Problem& problem, std::size_t 
   const auto simulated = [&](const model::ParameterValues& at, const model::SimulationInputs& in,
                              const std::vector<Output>& wanted,
                              const model::SimulationOptions& with) {
-    return model::simulate(data.rig, at, std::vector<int>(), in, times_s, wanted, with);
+    return simulated_ahead(data.rig, at, std::vector<int>(), in, times_s, wanted, with);
   };
   const auto run_with = [&](const model::ParameterValues& at, const model::SimulationInputs& in,
                             const std::vector<Output>& wanted) {
@@ -764,7 +819,7 @@ std::vector<Eigen::MatrixXd> effect_changes(const Problem& problem, std::size_t 
   Eigen::VectorXd drive;
   std::vector<model::SampledPeriod> periods;
   if (std::any_of(effects.begin(), effects.end(), [](const Effect& each) {
-        return each.kind == EffectKind::supply_sag || each.kind == EffectKind::valve_play;
+        return each.kind == EffectKind::supply_sag || each.is_of_spool();
       })) {
     const model::Simulation run =
         run_with(values, data.inputs, {Output::servo_flow, valve_drive(values)});
@@ -787,21 +842,24 @@ std::vector<Eigen::MatrixXd> effect_changes(const Problem& problem, std::size_t 
       model::SimulationInputs inputs = data.inputs;
       model::Simulation run;
       std::vector<Output> wanted = outputs;
-      if (effect.kind == EffectKind::valve_play) {
+      if (effect.is_of_spool()) {
+        const SpoolShape shape{effect.kind == EffectKind::valve_play ? size : 0.0,
+                               effect.kind == EffectKind::underlap ? size : 0.0};
         Eigen::VectorXd driven = drive;
-        for (int round = 1; round < kPlayRounds && driven.size() > 0; ++round) {
-          inputs.spool_error = spool_error(times_s, driven, size, periods);
+        for (int round = 1; round < kSpoolRounds && driven.size() > 0; ++round) {
+          inputs.spool_error = spool_error(times_s, driven, shape, periods);
           run = run_with(changed, inputs, {valve_drive(values)});
           driven = run.ok() ? Eigen::VectorXd(run.outputs.col(0)) : Eigen::VectorXd();
         }
         if (driven.size() == 0) continue;
-        inputs.spool_error = spool_error(times_s, driven, size, periods);
+        inputs.spool_error = spool_error(times_s, driven, shape, periods);
       } else if (effect.kind == EffectKind::supply_sag) {
         inputs.supply_pressure_pa = sagging_supply(effect, values, times_s, flow, size, periods);
       } else if (effect.kind == EffectKind::loop_gain) {
         see_with_gain(problem, condition, size, changed, inputs);
       } else {
-        changed.set(effect.index, values.value[static_cast<std::size_t>(effect.index)] + size);
+        changed.set(effect.index,
+                    values.value[static_cast<std::size_t>(effect.index)] + effect.sign * size);
         // A sensor changes no reading but its own, since the loop does not use it, unless the run
         // starts from its reading.
         const auto channel = sensor_channel(effect.about.key);

@@ -19,6 +19,7 @@ enum class EffectKind {
   sampling,    ///< the controller acts only at ticks, and the parameter is their period
   supply_sag,  ///< the supply pressure falls with the flow taken from it
   valve_play,  ///< the spool moves only after the signal has taken up the play
+  underlap,    ///< near null the spool opens twice as far as its signal
   loop_gain,   ///< gain of the sensor whose reading is both recorded and fed back to the controller
   bow,         ///< nonlinearity of the motion sensor that is quadratic in the reading
   wave,        ///< nonlinearity of the motion sensor in the form of one sine wave over the range
@@ -33,6 +34,7 @@ inline constexpr double kLeastSecant = 0.02;
 struct Effect {
   EffectKind kind = EffectKind::parameter;
   int index = -1;       ///< row of the parameter table; -1 if no parameter describes the effect
+  double sign = 1.0;    ///< -1 if the effect lowers its parameter
   double range = 0.0;   ///< range of the sensor, or the flow, that the size refers to, SI
   double middle = 0.0;  ///< reading at the middle of the sensor's range
   /// True if the secant depends on the size at which it is computed, as for friction, overlap and
@@ -48,6 +50,10 @@ struct Effect {
   /// itself.
   bool is_of_sensor() const {
     return kind == EffectKind::bow || kind == EffectKind::wave || kind == EffectKind::hysteresis;
+  }
+  /// Returns true if the effect is an error of the spool that follows from a simulation without it.
+  bool is_of_spool() const {
+    return kind == EffectKind::valve_play || kind == EffectKind::underlap;
   }
 };
 

@@ -165,7 +165,8 @@ ScoreCovariance covariance_of(const Problem& problem, std::span<const double> z,
   if (determined == 0) return {none, VectorXd::Zero(count), VectorXd::Ones(count)};
   MatrixXd combinations(determined + count, determined);
   combinations << MatrixXd::Identity(determined, determined), seen.left * seen.basis;
-  const auto scatter = score_contributions(seen.rows, none, combinations, threads);
+  const auto scatter =
+      score_contributions(seen.rows, none, combinations, threads, OwnPart::left_out);
   const auto repeats = scores_of_repeats(problem, z, seen.rows, threads);
   ScoreCovariance result;
   result.directions = none;

@@ -13,9 +13,8 @@ namespace rigcal::calib {
 namespace {
 
 const metrics::MetricSpec& metric(std::string_view name) {
-  const auto found = std::find_if(metrics::kMetrics.begin(), metrics::kMetrics.end(),
-                                  [name](const auto& spec) { return spec.name == name; });
-  if (found == metrics::kMetrics.end())
+  const metrics::MetricSpec* found = metrics::find_metric(name);
+  if (found == nullptr)
     throw std::invalid_argument(fmt::format("judge: no metric is named '{}'", name));
   return *found;
 }
@@ -70,18 +69,17 @@ LimitCheck check(const datasets::AcceptanceLimit& limit, datasets::DecisionRule 
   result.tolerance_used = 0.0;
   if (channel.expanded_uncertainty)
     result.expanded_uncertainty = (*channel.expanded_uncertainty).*spec.value;
-  const auto keeps = [&](double score, double bound) {
-    return spec.higher_is_better ? score >= bound : score <= bound;
-  };
   const auto beyond = [&](const std::optional<double>& bound) {
-    return bound && !keeps(value, *bound);
+    return bound && !metrics::keeps(spec, value, *bound);
   };
   const auto text = [&](double bound) {
     std::string note;
     const auto floor = floor_of(channel, limit.metric);
-    if (floor && (spec.higher_is_better ? *floor < bound : *floor > bound))
-      note = fmt::format("; the noise of the record allows {:.6g} at best", *floor);
-    return fmt::format("{}: {} = {:.6g} is {} {:.6g}{}", key, limit.metric, value,
+    if (floor && !metrics::keeps(spec, *floor, bound))
+      note = fmt::format("; the noise of the record allows {} at best",
+                         metrics::score_text(spec, *floor, bound));
+    return fmt::format("{}: {} = {} is {} {:.6g}{}", key, limit.metric,
+                       metrics::score_text(spec, value, bound),
                        spec.higher_is_better ? "below" : "above", bound, note);
   };
   if (beyond(limit.limit)) {
@@ -93,13 +91,15 @@ LimitCheck check(const datasets::AcceptanceLimit& limit, datasets::DecisionRule 
   } else if (limit.limit && counts_uncertainty(rule)) {
     const auto& uncertainty = result.expanded_uncertainty;
     const double worse = spec.higher_is_better ? -1.0 : 1.0;
-    result.in_guard_band = !uncertainty || !keeps(value + worse * *uncertainty, *limit.limit);
+    result.in_guard_band =
+        !uncertainty || !metrics::keeps(spec, value + worse * *uncertainty, *limit.limit);
     if (result.in_guard_band) {
       result.verdict = Verdict::warn;
       result.words = fmt::format(
-          "{}: {} = {:.6g} keeps {:.6g}, but {}", key, limit.metric, value, *limit.limit,
+          "{}: {} = {} keeps {:.6g}, but {}", key, limit.metric,
+          metrics::score_text(spec, value, *limit.limit), *limit.limit,
           uncertainty
-              ? fmt::format("not by more than its expanded uncertainty of {:.2g}", *uncertainty)
+              ? "not by more than its expanded uncertainty of " + significant(*uncertainty, 2)
               : std::string(
                     "its uncertainty is unknown: that needs at least two repeats that differ"));
     }

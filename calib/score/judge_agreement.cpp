@@ -9,6 +9,7 @@
 #include "calib/score/judge_limits.hpp"
 #include "calib/score/judges.hpp"
 #include "datasets/checks/sensor_doubts.hpp"
+#include "metrics/metric_table.hpp"
 
 namespace rigcal::calib {
 namespace {
@@ -18,6 +19,10 @@ using datasets::Campaign;
 /// If there are no limits, an agreement below this value is reported. By any standard, a model that
 /// explains less than nine tenths of the variance does not describe a record.
 constexpr double kPoorRho2 = 0.9;
+
+std::string rho2_text(double rho2) {
+  return metrics::score_text(*metrics::find_metric("rho2"), rho2, kPoorRho2);
+}
 
 /// Reports limits in the campaign that apply to no scored condition.
 void judge_unused_limits(const Campaign& campaign, const Fit& fit, std::vector<Reason>& reasons) {
@@ -95,7 +100,7 @@ void judge_without_limits(const Campaign& campaign, const Fit& fit, std::vector<
     if (scored) numbers.emplace_back("rho2", each.rho2);
     const std::string where = fmt::format(
         "{} ({} in {})", conditions_text(each.conditions),
-        scored ? fmt::format("lowest rho2 {:.4g}", each.rho2) : "no rho2 exists", each.worst->id);
+        scored ? "lowest rho2 " + rho2_text(each.rho2) : "no rho2 exists", each.worst->id);
     reasons.push_back(
         stated
             ? reason(AspectState::note, "not_judged_as_stated",
@@ -132,7 +137,7 @@ void name_poor_agreement(const Fit& fit, std::vector<Reason>& reasons) {
   const double rho2 = worst->metrics.rho2;
   const bool poor = rho2 < kPoorRho2;
   reasons.push_back(reason(AspectState::not_assessed, poor ? "poor_agreement" : "least_agreement",
-                           fmt::format("least agreement: rho2 = {:.4g} of {} in {}{}", rho2,
+                           fmt::format("least agreement: rho2 = {} of {} in {}{}", rho2_text(rho2),
                                        datasets::info(worst->channel).key, where->id,
                                        poor ? ": the model does not describe this record" : ""),
                            where->id, {{"rho2", rho2}}));

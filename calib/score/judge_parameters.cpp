@@ -7,6 +7,7 @@
 #include <string>
 
 #include "calib/score/judges.hpp"
+#include "common/readable.hpp"
 #include "common/significant.hpp"
 
 namespace rigcal::calib {
@@ -118,10 +119,7 @@ void note_further_starts(const Fit& fit, std::vector<Reason>& reasons) {
 /// Formats the size of an effect in a readable unit.
 std::string readable_size(double value, const std::string& unit) {
   if (unit == "1") return significant(100.0 * value, 2) + " %";
-  if (unit == "s" || unit == "m" || unit == "V")
-    return fmt::format("{} m{}", significant(1e3 * value, 2), unit);
-  if (unit == "N" || unit == "V/(m s)") return fmt::format("{} {}", significant(value, 2), unit);
-  return fmt::format("{:.2g} {}", value, unit);
+  return readable(value, unit, 2);
 }
 
 double half_width_if_exact(const FittedParameter& parameter) {
@@ -188,9 +186,11 @@ void judge_stability(const Campaign& campaign, const Fit& fit, std::vector<Reaso
     if (!each.differs) continue;
     const int row = model::parameter_index(campaign.rig.plant, each.key);
     const auto& spec = model::parameter_spec(campaign.rig.plant, row);
-    words.push_back(fmt::format("{} {:.4g} {} ({:+.2g}, {:.2g} allowed)",
-                                parameter_label(each.key, each.scope, each.level), each.value,
-                                spec.unit, each.difference, each.expanded));
+    const ReadableUnit unit = readable_unit(each.value, spec.unit);
+    words.push_back(fmt::format(
+        "{} {} ({}{}, {} allowed)", parameter_label(each.key, each.scope, each.level),
+        readable(each.value, spec.unit, 4), each.difference < 0.0 ? "" : "+",
+        significant(each.difference / unit.si, 2), significant(each.expanded / unit.si, 2)));
   }
   const std::vector<std::pair<std::string, double>> numbers{
       {"differ", static_cast<double>(words.size())},

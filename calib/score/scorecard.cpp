@@ -307,6 +307,7 @@ std::vector<ConditionScore> unscored_conditions(const Problem& problem, const st
 }
 
 std::vector<std::string> overfitting_warnings(const std::vector<ConditionScore>& scores) {
+  const metrics::MetricSpec& rho2 = *metrics::find_metric("rho2");
   std::vector<std::string> warnings;
   for (const ConditionScore& score : scores) {
     for (const ChannelScore& channel : score.channels) {
@@ -318,11 +319,12 @@ std::vector<std::string> overfitting_warnings(const std::vector<ConditionScore>&
       const double least = 1.0 - channel.noise_floor->rho2;
       if (unexplained >= least * (1.0 - std::max(0.2, margin))) continue;
       warnings.push_back(
-          fmt::format("condition \"{}\": {} has rho2 = {:.6g}, better than the {:.6g} that a "
+          fmt::format("condition \"{}\": {} has rho2 = {}, better than the {} that a "
                       "perfect model could reach: the fit follows the noise (overfitting), or the "
                       "noise is smaller than its stated standard deviation",
-                      score.id, datasets::info(channel.channel).key, channel.metrics.rho2,
-                      channel.noise_floor->rho2));
+                      score.id, datasets::info(channel.channel).key,
+                      metrics::score_text(rho2, channel.metrics.rho2, channel.noise_floor->rho2),
+                      metrics::score_text(rho2, channel.noise_floor->rho2, channel.metrics.rho2)));
     }
   }
   return warnings;

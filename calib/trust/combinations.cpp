@@ -5,8 +5,8 @@
 #include <cmath>
 #include <optional>
 
+#include "calib/trust/unit_product.hpp"
 #include "common/significant.hpp"
-#include "common/unit_product.hpp"
 #include "metrics/distributions.hpp"
 
 namespace rigcal::calib {
@@ -58,10 +58,10 @@ std::string text_of(const Problem& problem, std::span<const double> z, const Pow
       std::pow(problem.map.to_physical(static_cast<int>(c.second), z[c.second]), c.power);
   const std::string unit =
       unit_product(problem.spec(c.first).unit, problem.spec(c.second).unit, -c.power);
-  return fmt::format(
-      "the records determine only {}{}{} = {:.3g}{} (to {} %), not {} and {} separately", a,
-      c.power > 0.0 ? "/" : " * ", power_text(b, std::abs(c.power)), value,
-      unit == "1" ? "" : " " + unit, significant(100.0 * c.half_width, 2), a, b);
+  return fmt::format("the records determine only {}{}{} = {}{} (to {} %), not {} and {} separately",
+                     a, c.power > 0.0 ? "/" : " * ", power_text(b, std::abs(c.power)),
+                     significant(value, 3), unit == "1" ? "" : " " + unit,
+                     significant(100.0 * c.half_width, 2), a, b);
 }
 
 /// Finds the partner with which the unknown forms the most precisely known product of powers.

@@ -14,6 +14,8 @@
 #include "calib/trust/interval_advice.hpp"
 #include "calib/trust/lack_of_fit.hpp"
 #include "calib/trust/symmetry.hpp"
+#include "common/readable.hpp"
+#include "common/significant.hpp"
 
 namespace rigcal::calib {
 namespace {
@@ -47,14 +49,14 @@ void warn_of_noise(const Problem& problem, const Uncertainty& found, Fit& fit) {
         fit.residual_count, problem.map.unknowns().size()));
   } else if (chi > 1.0 + std::max(0.1, margin)) {
     fit.warnings.push_back(fmt::format(
-        "the residuals are {:.3g} times as large as the noise (reduced chi-square {:.4g}): the "
+        "the residuals are {} times as large as the noise (reduced chi-square {}): the "
         "model does not fully explain the records; standard errors are scaled up by that factor",
-        std::sqrt(chi), chi));
+        significant(std::sqrt(chi), 3), significant(chi, 4)));
   } else if (!problem.has_estimated_sd() && chi < 1.0 - std::max(0.5, margin)) {
     fit.warnings.push_back(
-        fmt::format("the residuals are only {:.3g} times as large as the noise (reduced chi-square "
-                    "{:.4g}): the stated standard deviations are too large",
-                    std::sqrt(chi), chi));
+        fmt::format("the residuals are only {} times as large as the noise (reduced chi-square "
+                    "{}): the stated standard deviations are too large",
+                    significant(std::sqrt(chi), 3), significant(chi, 4)));
   }
 }
 
@@ -66,9 +68,9 @@ void warn_of_priors(const Problem& problem, const std::vector<FittedParameter>& 
                         std::string_view unit, const char* what) {
     const double pull = std::abs(prior.residual(value));
     if (pull <= kFar) return;
-    fit.warnings.push_back(
-        fmt::format("{}: {} {:.4g} {}, {:.2g} standard deviations of its prior from {:.4g} {}",
-                    name, what, value, unit, pull, prior.mean, unit));
+    fit.warnings.push_back(fmt::format("{}: {} {}, {:.2g} standard deviations of its prior from {}",
+                                       name, what, readable(value, unit, 4), pull,
+                                       readable(prior.mean, unit, 4)));
   };
   for (std::size_t j = 0; j < parameters.size(); ++j) {
     if (const auto& prior = problem.map.unknowns()[j].prior) {

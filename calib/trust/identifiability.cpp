@@ -6,6 +6,7 @@
 #include <cmath>
 #include <set>
 
+#include "common/readable.hpp"
 #include "common/significant.hpp"
 #include "metrics/significance.hpp"
 
@@ -45,8 +46,7 @@ bool may_be_absent(const ParameterSpec& spec) {
 
 /// Writes the end of an interval with two significant digits, as reports do.
 std::string number(const ParameterSpec& spec, double value) {
-  return spec.unit == "1" ? fmt::format("{:.2g}", value)
-                          : fmt::format("{:.2g} {}", value, spec.unit);
+  return readable(value, spec.unit, 2);
 }
 
 /// Returns, for example, "; correlated 0.98 with mass_kg", or an empty string.

@@ -8,6 +8,7 @@
 #include "calib/problem/r_factor.hpp"
 #include "calib/problem/scaled_svd.hpp"
 #include "calib/search/optimum.hpp"
+#include "common/readable.hpp"
 #include "metrics/distributions.hpp"
 
 namespace rigcal::calib {
@@ -126,9 +127,10 @@ void try_signals(const Problem& problem, std::span<const double> z, const Eigen:
           tried_rows(problem, like, z, inputs, times, condition.outputs.front(), channel.sd);
       if (rows.size() == 0 || !tells(problem, z, above(jacobian, as_triangle(rows)), target))
         continue;
-      words.push_back(fmt::format("a {} of {:g} Hz (amplitude {:.3g} {}, {:.3g} s)",
-                                  square ? "square wave" : "sine", frequency_hz, amplitude,
-                                  info(drive_channel(*problem.campaign)).unit, times.back()));
+      words.push_back(fmt::format(
+          "a {} of {:g} Hz (amplitude {}, {})", square ? "square wave" : "sine", frequency_hz,
+          readable(amplitude, info(drive_channel(*problem.campaign)).unit, 3),
+          readable(times.back(), "s", 3)));
       return;
     }
   }

@@ -8,6 +8,7 @@
 #include <string_view>
 
 #include "calib/trust/lack_of_fit.hpp"
+#include "common/readable.hpp"
 #include "common/significant.hpp"
 
 namespace rigcal::calib {
@@ -34,8 +35,10 @@ std::string ends_text(const Range& interval, std::string_view unit) {
   const double size = std::max(std::abs(interval.low), std::abs(interval.high));
   const double share = width(interval) > 0.0 ? size / width(interval) : 1.0;
   const int digits = std::clamp(3 + static_cast<int>(std::ceil(std::log10(share))), 4, 12);
-  return fmt::format("{:.{}g} to {:.{}g}{}{}", interval.low, digits, interval.high, digits,
-                     unit == "1" ? "" : " ", unit == "1" ? "" : unit);
+  const ReadableUnit in = readable_unit(size, unit);
+  return fmt::format("{} to {}{}{}", significant(interval.low / in.si, digits),
+                     significant(interval.high / in.si, digits), in.name.empty() ? "" : " ",
+                     in.name);
 }
 
 /// Compares the profile and the bootstrap of a parameter with `ci95`, and names the interval to use
@@ -110,14 +113,15 @@ std::string interval_advice(const Problem& problem, const OptimumCheck& check,
       test.by_repeats() ? "the variation between repeats" : "the stated `sd`";
   if (*flagged) {
     return text + fmt::format(
-                      "; significant lack of fit (condition \"{}\", {}: residual variance {:.3g} "
-                      "times that of {}, p = {:.2g}): intervals apply to the values that fit this "
+                      "; significant lack of fit (condition \"{}\", {}: residual variance {} "
+                      "times that of {}, {}): intervals apply to the values that fit this "
                       "model best to these signals; other signals may lead to other values",
-                      test.condition, datasets::info(test.channel).key, test.ratio, against,
-                      test.p);
+                      test.condition, datasets::info(test.channel).key, significant(test.ratio, 3),
+                      against, p_value_text(test.p));
   }
-  return text + fmt::format("; no lack of fit detected against {} (smallest p = {:.2g}, {} test{})",
-                            against, test.p, tests.size(), tests.size() == 1 ? "" : "s");
+  return text + fmt::format("; no lack of fit detected against {} (smallest {}, {} test{})",
+                            against, p_value_text(test.p), tests.size(),
+                            tests.size() == 1 ? "" : "s");
 }
 
 std::optional<BetweenRepeats> between_repeats(const Problem& problem, const Uncertainty& found) {
@@ -144,9 +148,9 @@ std::optional<BetweenRepeats> between_repeats(const Problem& problem, const Unce
 std::string between_repeats_warning(const BetweenRepeats& repeats) {
   if (!repeats.differ) return {};
   std::string text = fmt::format(
-      "repeats differ from one another by more than their noise (p = {:.2g}): standard errors from "
-      "these differences are up to {:.2g} times those from the residuals of their mean",
-      repeats.p, repeats.ratio);
+      "repeats differ from one another by more than their noise ({}): standard errors from "
+      "these differences are up to {} times those from the residuals of their mean",
+      p_value_text(repeats.p), significant(repeats.ratio, 2));
   if (!repeats.parameters.empty())
     text += fmt::format(", and the intervals of {} use them", fmt::join(repeats.parameters, ", "));
   if (!repeats.cause) return text;

@@ -7,6 +7,7 @@
 #include <limits>
 #include <stdexcept>
 
+#include "common/significant.hpp"
 #include "metrics/distributions.hpp"
 
 namespace rigcal::calib {
@@ -43,10 +44,6 @@ std::string signed_text(double value) {
   constexpr double kWhole = 100.0;
   return std::abs(value) < kWhole || std::abs(value) > 1e9 ? fmt::format("{:+.3g}", value)
                                                            : fmt::format("{:+.0f}", value);
-}
-
-std::string p_text(double p) {
-  return p < 1e-4 ? std::string("p < 0.0001") : fmt::format("p = {:.2g}", p);
 }
 
 }  // namespace
@@ -108,7 +105,7 @@ ModelChoice choose(const Candidate& smaller, const Candidate& larger) {
       larger.independent_residuals < larger.residuals ? "the independent residuals"
                                                       : "all residuals",
       signed_text(result.likelihood_ratio).substr(1), result.freedom,
-      result.freedom == 1 ? "" : "s", p_text(result.p), signed_text(result.delta_aic),
+      result.freedom == 1 ? "" : "s", p_value_text(result.p), signed_text(result.delta_aic),
       signed_text(result.delta_bic), larger.name, smaller.name,
       bic_agrees ? "" : "; BIC disagrees: the choice is not clear");
   return result;

@@ -9,6 +9,7 @@
 
 #include "calib/search/search.hpp"
 #include "common/bytes.hpp"
+#include "common/readable.hpp"
 #include "common/task_farm.hpp"
 #include "metrics/distributions.hpp"
 
@@ -323,11 +324,10 @@ void profiles(const Problem& problem, const std::vector<datasets::Record>& recor
     const bool above =
         !profile.high.value && !profile.high.is_lost() && unknowns[j].upper < spec.upper;
     if (!below && !above) continue;
-    const std::string unit = spec.unit == "1" ? "" : fmt::format(" {}", spec.unit);
-    say(fmt::format("its profile is open {}: followed from {:.4g}{} to {:.4g}{}",
+    say(fmt::format("its profile is open {}: followed from {} to {}",
                     below && above ? "on both sides" : (above ? "above" : "below"),
-                    profile.low.value.value_or(profile.low.reached), unit,
-                    profile.high.value.value_or(profile.high.reached), unit));
+                    readable(profile.low.value.value_or(profile.low.reached), spec.unit, 4),
+                    readable(profile.high.value.value_or(profile.high.reached), spec.unit, 4)));
     // A bound within the interval restricts the parameter more than the records do; a bound outside
     // restricts it less.
     const double half_width = parameter.ci95_if_exact

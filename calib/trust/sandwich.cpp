@@ -28,7 +28,11 @@ struct ChannelRows {
 
 ChannelRows channel_rows(const ScoreRows& rows, Index channel) {
   const Index samples = rows.residual.size() / rows.channels;
-  return {rows.rows(channel * samples, samples), rows.residual.segment(channel * samples, samples)};
+  const Index first = channel * samples;
+  RowMajor jacobian = rows.narrow.rows() > 0
+                          ? RowMajor(rows.narrow.middleRows(first, samples).cast<double>())
+                          : RowMajor(rows.jacobian.middleRows(first, samples));
+  return {std::move(jacobian), rows.residual.segment(first, samples)};
 }
 
 /// Computes L^T J: y[t] = x[t] + sum_k phi[k] y[t + 1 + k].
@@ -224,13 +228,27 @@ VectorXd kernel_variances(const RowMajor& scores, double width) {
   return 2.0 * half;
 }
 
+/// Returns the products of rows with the combinations c (one per column). Those of the leading
+/// combinations that are one direction each, in order, are the rows themselves.
+RowMajor combined_rows(const RowMajor& rows, const MatrixXd& c) {
+  const Index directions = c.rows();
+  if (c.cols() <= directions ||
+      !(c.leftCols(directions).array() == MatrixXd::Identity(directions, directions).array()).all())
+    return rows * c;
+  RowMajor result(rows.rows(), c.cols());
+  result.leftCols(directions) = rows;
+  result.rightCols(c.cols() - directions).noalias() = rows * c.rightCols(c.cols() - directions);
+  return result;
+}
+
 /// Sums over the channels of a condition, each of shape (samples, directions or combinations).
 /// Because records are long, at most these and two more such arrays are in memory at any time.
 struct ChannelSums {
   RowMajor scores;   ///< contributions of the samples to the score
   RowMajor weights;  ///< variance of each combination of these contributions
-  RowMajor own;  ///< covariance of the contributions with the error of each combination, divided by
-                 ///< the standard error of the combination
+  /// Covariance of the contributions with the error of each combination, divided by the standard
+  /// error of the combination; empty if it is left out.
+  RowMajor own;
   double independent_residuals = 0.0;
 };
 
@@ -243,7 +261,7 @@ void add(RowMajor& sum, RowMajor term) {
 }
 
 ChannelSums sum_channels(const ScoreRows& rows, const std::vector<Autoregression>& noise,
-                         const MatrixXd& total, const MatrixXd& combinations) {
+                         const MatrixXd& total, const MatrixXd& combinations, OwnPart own_part) {
   const MatrixXd c = combinations.transpose();
   const MatrixXd total_c = total * c;
   const VectorXd variance = (c.transpose() * total_c).diagonal();
@@ -255,14 +273,16 @@ ChannelSums sum_channels(const ScoreRows& rows, const std::vector<Autoregression
     ChannelRows channel = channel_rows(rows, k);
     const VectorXd innovations = whitened(model, channel.residual).col(0);
     RowMajor filtered = backwards(model, channel.jacobian);
-    RowMajor combined = filtered * c;
+    RowMajor combined = combined_rows(filtered, c);
     filtered.array().colwise() *= innovations.array();
     add(sums.scores, std::move(filtered));
-    RowMajor own = model.variance * combined;
-    own.noalias() -= whitened(model, std::move(channel.jacobian)) * total_c;
-    own.array() *= combined.array();
-    own.array().rowwise() *= per_error.transpose();
-    add(sums.own, std::move(own));
+    if (own_part == OwnPart::computed) {
+      RowMajor own = model.variance * combined;
+      own.noalias() -= whitened(model, std::move(channel.jacobian)) * total_c;
+      own.array() *= combined.array();
+      own.array().rowwise() *= per_error.transpose();
+      add(sums.own, std::move(own));
+    }
     combined = model.variance * combined.cwiseAbs2();
     add(sums.weights, std::move(combined));
     sums.independent_residuals +=
@@ -272,18 +292,22 @@ ChannelSums sum_channels(const ScoreRows& rows, const std::vector<Autoregression
 }
 
 ScoreContribution scatter_of(const ScoreRows& rows, std::vector<Autoregression> noise,
-                             const MatrixXd& total, const MatrixXd& combinations) {
+                             const MatrixXd& total, const MatrixXd& combinations,
+                             OwnPart own_part) {
   ScoreContribution result;
   const auto [scores, weights, own, independent_residuals] =
-      sum_channels(rows, noise, total, combinations);
+      sum_channels(rows, noise, total, combinations, own_part);
   result.independent_residuals = independent_residuals;
   const double width = bandwidth(scores);
   result.covariance = kernel_covariance(scores, width);
   const bool whitening =
       std::any_of(noise.begin(), noise.end(), [](const auto& each) { return !each.phi.empty(); });
   result.freedom = VectorXd::Zero(combinations.rows());
-  result.own = VectorXd::Zero(combinations.rows());
-  const VectorXd own_variance = kernel_variances(own, width);
+  VectorXd own_variance;
+  if (own_part == OwnPart::computed) {
+    result.own = VectorXd::Zero(combinations.rows());
+    own_variance = kernel_variances(own, width);
+  }
   VectorXd sum = VectorXd::Zero(combinations.rows());
   VectorXd squares = sum;
   for (Index t = 0; t < weights.rows(); ++t) {
@@ -293,7 +317,9 @@ ScoreContribution scatter_of(const ScoreRows& rows, std::vector<Autoregression> 
   for (Index j = 0; j < combinations.rows(); ++j) {
     if (!(squares(j) > 0.0)) continue;
     const VectorXd c = combinations.row(j).transpose();
-    if (const double all = c.dot(total * c); all > 0.0) result.own(j) = own_variance(j) / all;
+    if (own_variance.size() > 0) {
+      if (const double all = c.dot(total * c); all > 0.0) result.own(j) = own_variance(j) / all;
+    }
     const double terms = sum(j) * sum(j) / squares(j);
     result.freedom(j) = 1.0 / (std::max(1.0, kParzenSquare * width) / terms +
                                (whitening ? 2.0 / result.independent_residuals : 0.0));
@@ -326,14 +352,15 @@ MatrixXd ScoreRows::rows(Index first, Index count) const {
 
 std::vector<ScoreContribution> score_contributions(const std::vector<ScoreRows>& rows,
                                                    const ArrowMatrix& priors,
-                                                   const ArrowRoot& combinations, int threads) {
+                                                   const ArrowRoot& combinations, int threads,
+                                                   OwnPart own) {
   std::vector<ChannelNoise> channels = noise_models(rows, priors, threads);
   const ArrowMatrix total = total_of(priors, channels);
   std::vector<std::vector<Autoregression>> noise(rows.size());
   for (ChannelNoise& each : channels) noise[each.condition].push_back(std::move(each.noise));
   std::vector<ScoreContribution> result(rows.size());
   parallel_for(rows.size(), threads, [&](std::size_t i) {
-    result[i] = scatter_of(rows[i], std::move(noise[i]), total.of(i), combinations.rows(i));
+    result[i] = scatter_of(rows[i], std::move(noise[i]), total.of(i), combinations.rows(i), own);
   });
   return result;
 }

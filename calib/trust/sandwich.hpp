@@ -30,6 +30,9 @@ struct ScoreRows {
   Eigen::MatrixXd all_rows() const { return rows(0, std::max(narrow.rows(), jacobian.rows())); }
 };
 
+/// Whether ScoreContribution::own is computed. Only RobustVariance::quantile() reads it.
+enum class OwnPart { computed, left_out };
+
 /// Contribution of one condition to the long-run covariance of the score J^T r.
 struct ScoreContribution {
   Eigen::MatrixXd covariance;  ///< shape (directions, directions), positive semidefinite
@@ -68,9 +71,11 @@ struct ScoreContribution {
 /// @param rows          all conditions of the fit
 /// @param priors        J^T J of the priors; their errors have the stated variances
 /// @param combinations  combinations of the directions, one per unknown
+/// @param own           `own` takes about half of the time if there are many combinations
 std::vector<ScoreContribution> score_contributions(const std::vector<ScoreRows>& rows,
                                                    const ArrowMatrix& priors,
-                                                   const ArrowRoot& combinations, int threads = 1);
+                                                   const ArrowRoot& combinations, int threads = 1,
+                                                   OwnPart own = OwnPart::computed);
 
 /// Returns the degrees of freedom of a condition's contribution to the variance of an unknown. If
 /// the unknown belongs to another condition, this condition contributes through the shared

@@ -9,9 +9,9 @@
 #include <limits>
 #include <set>
 
+#include "calib/trust/unit_product.hpp"
 #include "common/parallel.hpp"
 #include "common/significant.hpp"
-#include "common/unit_product.hpp"
 
 namespace rigcal::calib {
 namespace {

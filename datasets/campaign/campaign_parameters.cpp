@@ -34,6 +34,18 @@ double read_value(const TomlNode& node, const model::ParameterSpec& spec) {
   return value;
 }
 
+/// Returns the names of the plants that have a parameter.
+std::vector<std::string> plants_with(std::string_view key) {
+  std::vector<std::string> names = model::plant_names();
+  names.erase(std::remove_if(names.begin(), names.end(),
+                             [&](const std::string& name) {
+                               return model::parameter_index(model::plant_from_name(name).value(),
+                                                             key) < 0;
+                             }),
+              names.end());
+  return names;
+}
+
 /// Returns the parameter index of a key, and checks that the key is allowed in this table.
 int read_index(const TomlNode& table, std::string_view key, model::PlantKind plant,
                ParameterGroup group, const std::vector<std::string>& others) {
@@ -46,6 +58,11 @@ int read_index(const TomlNode& table, std::string_view key, model::PlantKind pla
                                            : "is not a controller parameter: expected in "
                                              "[rig.parameters], or in `parameters`");
   }
+  const std::vector<std::string> owners = plants_with(key);
+  if (!owners.empty())
+    table.require(key, "a parameter")
+        .fail(fmt::format("is a parameter of {}, and not of {}, which this rig is",
+                          fmt::join(owners, " and "), to_string(plant)));
   std::vector<std::string> known = others;
   const auto keys = parameter_keys(plant, group);
   known.insert(known.end(), keys.begin(), keys.end());
@@ -421,13 +438,12 @@ std::optional<ParameterConflict> find_pump_conflict(const model::ParameterValues
   return std::nullopt;
 }
 
-/// Checks the valve and pump parameters of a two-chamber cylinder.
+/// Checks the valve parameters of a two-chamber cylinder.
 std::optional<ParameterConflict> find_metering_conflict(const model::Rig& rig,
                                                         const model::ParameterValues& values) {
   if (model::parameter_index(values.plant, "pilot_gain") < 0) return std::nullopt;
   if (const auto conflict = find_pilot_conflict(rig, values)) return conflict;
-  if (const auto conflict = find_opening_conflict(values)) return conflict;
-  return find_pump_conflict(values);
+  return find_opening_conflict(values);
 }
 
 /// Parameters that belong together: the first that was given, and the first that was not.
@@ -475,6 +491,16 @@ std::optional<ParameterConflict> find_actuator_conflict(const model::ParameterVa
                              "makes the rig a rotary actuator: expected only one of them",
                              present)};
   }
+  constexpr std::array kOfPiston{"coulomb_friction",   "stribeck_friction", "stribeck_velocity",
+                                 "friction_smoothing", "seal_friction",     "bristle_stiffness",
+                                 "bristle_damping",    "film_velocity",     "film_growth_time",
+                                 "film_decay_time",    "film_dwell_time"};
+  if (const char* const present = completeness(values, kOfPiston).present)
+    return ParameterConflict{
+        present, fmt::format("{} is friction of a piston that slides, in newtons and metres, but "
+                             "displacement_per_radian makes the rig a rotary actuator, whose "
+                             "friction is a moment: expected joint_friction",
+                             present)};
   return std::nullopt;
 }
 
@@ -834,6 +860,7 @@ std::optional<ParameterConflict> find_conflict(const model::Rig& rig,
     if (const auto conflict = find_joint_conflict(values)) return conflict;
   }
   if (const auto conflict = find_metering_conflict(rig, values)) return conflict;
+  if (const auto conflict = find_pump_conflict(values)) return conflict;
   if (const auto conflict = find_bristle_conflict(values)) return conflict;
   if (const auto conflict = find_load_conflict(values)) return conflict;
   if (const auto conflict = find_temperature_conflict(values)) return conflict;

@@ -326,10 +326,14 @@ std::string channels_text(const fs::path& file, const FileColumns& columns) {
   const auto candidates = candidates_in(file, columns);
   std::string text = "[recording.channels]\n";
   if (columns.time.empty())
-    text += fmt::format("time = {{ column = \"{}\", unit = \"s\" }}{}\n", kBlank,
-                        comment(perhaps(candidates, [](const Candidate& each) {
-                          return each.has_numbers && each.increases;
-                        })));
+    text += fmt::format(
+        "time = {{ column = \"{}\", unit = \"s\" }}{}\n", kBlank,
+        comment(perhaps(candidates,
+                        [](const Candidate& each) { return each.has_numbers && each.increases; }) +
+                "; a count of samples needs gain = ..., the seconds from one to the next"));
+  else if (columns.time_unit == kTicks)
+    text += fmt::format("time = {{ column = {}, unit = \"us\", gain = 0.1 }}{}\n",
+                        toml_quoted(columns.time), comment("in ticks of 100 ns"));
   else
     text += fmt::format("time = {{ column = {}, unit = {} }}{}\n", toml_quoted(columns.time),
                         toml_quoted(columns.time_unit.empty() ? "s" : columns.time_unit),

@@ -274,7 +274,9 @@ std::optional<std::pair<std::vector<double>, std::vector<double>>> signal_of(
   auto data = timed_columns(file, columns.time, column);
   try {
     const double to_s =
-        unit_conversion(columns.time_unit.empty() ? "s" : columns.time_unit, "s").scale;
+        columns.time_unit == kTicks
+            ? 1e-7
+            : unit_conversion(columns.time_unit.empty() ? "s" : columns.time_unit, "s").scale;
     for (double& t : data[0]) t *= to_s;
   } catch (const QuantityError&) {
     return std::nullopt;

@@ -3,6 +3,7 @@
 #include <filesystem>
 #include <optional>
 #include <string>
+#include <string_view>
 #include <utility>
 #include <vector>
 
@@ -10,6 +11,9 @@
 #include "model/simulate.hpp"
 
 namespace rigcal::datasets {
+
+/// Unit of the times of controllers on Windows, which campaign files write as "us" with a gain.
+inline constexpr std::string_view kTicks = "100 ns";
 
 /// A text split at the number that ends it: "run_03" into "run_" and "03".
 struct Numbered {

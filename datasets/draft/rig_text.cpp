@@ -75,6 +75,10 @@ constexpr std::array<std::string_view, 6> kPilotTerms{
 constexpr std::array<std::string_view, 1> kLeakLineTerms{"leakage_resistance"};
 constexpr std::array<std::string_view, 1> kSealTerms{"seal_friction"};
 
+/// Friction of the cylinder of a joint, proposed with that of its seals: in newtons, apart from the
+/// moment of the joint.
+constexpr std::array<std::string_view, 2> kJointSealTerms{"coulomb_friction", "bristle_stiffness"};
+
 /// A load that varies along the travel, proposed if a position and pressures were recorded.
 constexpr std::array<std::string_view, 2> kLoadGradientTerms{"load_gradient", "load_curvature"};
 
@@ -87,11 +91,14 @@ constexpr std::array<std::string_view, 7> kOpeningTerms{
 /// The second stage of a valve, proposed if the position of a spool was recorded.
 constexpr std::array<std::string_view, 1> kTwoStageTerms{"main_spool_gain"};
 
-/// A supply whose pressure varies, proposed if it was recorded. Four edges only.
-constexpr std::array<std::string_view, 8> kSupplyTerms{
-    "supply_resistance",     "supply_capacity",    "pump_flow",
-    "pump_second_flow",      "pump_delay",         "accumulator_volume",
-    "accumulator_precharge", "load_sensing_margin"};
+/// A supply whose pressure varies, proposed if it was recorded.
+constexpr std::array<std::string_view, 5> kSupplyTerms{"supply_resistance", "supply_capacity",
+                                                       "pump_flow", "accumulator_volume",
+                                                       "accumulator_precharge"};
+
+/// A pump that changes its flow or its pressure, proposed with them. Four edges only.
+constexpr std::array<std::string_view, 3> kPumpControlTerms{"pump_second_flow", "pump_delay",
+                                                            "load_sensing_margin"};
 
 /// A load by a table, proposed if position and both chamber pressures were recorded: they show how
 /// the load varies with the travel.
@@ -133,9 +140,11 @@ std::string terms_text(model::PlantKind plant, const RecordedSigns& signs) {
   const bool four_edges = plant != model::PlantKind::load_pressure;
   if (signs.spool) add(kTwoStageTerms);
   if (signs.command && four_edges) add(kOpeningTerms);
-  if (signs.supply && four_edges) add(kSupplyTerms);
+  if (signs.supply) add(kSupplyTerms);
+  if (signs.supply && four_edges) add(kPumpControlTerms);
   if (signs.pressures) add(kLeakLineTerms);
-  if (signs.pressures && slides) add(kSealTerms);
+  if (signs.pressures) add(kSealTerms);
+  if (signs.pressures && !slides) add(kJointSealTerms);
   if (signs.pressures && signs.position && slides) add(kLoadGradientTerms);
   if (signs.load_table) add(kLoadTableTerms);
   if (signs.payload) add(kPayloadTerms);
@@ -171,7 +180,10 @@ std::string rig_text(model::PlantKind plant, std::optional<model::Feedback> loop
   std::string text = "[rig]\n" + model_text(plant);
   text +=
       "# Fit what the data sheet does not give: { start = ..., lower = ..., upper = ..., fit = "
-      "true }\n[rig.parameters]\n";
+      "true }\n"
+      "# A value that is not fitted counts as exact unless its uncertainty is given: { start = "
+      "..., "
+      "prior = ..., prior_sd = ... }\n[rig.parameters]\n";
   for (const model::ParameterSpec& spec : model::parameter_table(plant)) {
     // A valve with four metering edges has one of two gains, depending on what drives it.
     // A linkage may have a triangle or a table in place of its lever, or a rotary actuator in place

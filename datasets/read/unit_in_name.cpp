@@ -52,6 +52,7 @@ constexpr std::array kSplitUnits{
 
 /// Common spellings of units, in lower case, with the units that they mean.
 constexpr std::array kSpellings{std::pair<std::string_view, std::string_view>{"c", "degC"},
+                                std::pair<std::string_view, std::string_view>{"100ns", "100 ns"},
                                 std::pair<std::string_view, std::string_view>{"deg c", "degC"},
                                 std::pair<std::string_view, std::string_view>{"deg f", "degF"},
                                 std::pair<std::string_view, std::string_view>{"psig", "psi"},

@@ -8,6 +8,7 @@
 #include <cmath>
 #include <set>
 
+#include "common/readable.hpp"
 #include "common/significant.hpp"
 #include "diagnosis/machine/machine_state.hpp"
 #include "diagnosis/record/obstacles.hpp"
@@ -30,13 +31,7 @@ std::vector<const datasets::Condition*> fitted_conditions(const datasets::Campai
 }
 
 std::string quantity_in_words(const calib::DayQuantity& quantity) {
-  const double sd = quantity.sd;
-  const std::string size = quantity.unit == "Pa" && sd >= 1e6 ? significant(1e-6 * sd, 2) + " MPa"
-                           : quantity.unit == "Pa"            ? significant(1e-3 * sd, 2) + " kPa"
-                           : quantity.unit == "s"             ? significant(1e3 * sd, 2) + " ms"
-                           : quantity.unit == "m"             ? significant(1e3 * sd, 2) + " mm"
-                                                  : significant(sd, 2) + " " + quantity.unit;
-  return quantity.meaning + " " + size;
+  return quantity.meaning + " " + readable(quantity.sd, quantity.unit, 2);
 }
 
 }  // namespace

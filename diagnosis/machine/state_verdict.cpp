@@ -24,9 +24,10 @@ std::string agreement_of(const MachineState& state) {
       state.members.begin(), state.members.end(),
       [](const auto& a, const auto& b) { return a.coefficient < b.coefficient; });
   return fmt::format(
-      " {} disagree (coefficients {:.3g} to {:.3g}, {}): one leak cannot explain all, or the fit "
+      " {} disagree (coefficients {} to {}, {}): one leak cannot explain all, or the fit "
       "is wrong. The interval includes their disagreement.",
-      signals_of(state), low->coefficient, high->coefficient, p_value_text(state.pooled.p));
+      signals_of(state), significant(low->coefficient, 3), significant(high->coefficient, 3),
+      p_value_text(state.pooled.p));
 }
 
 /// @param share_ci95  fractions of one
@@ -61,9 +62,10 @@ std::string state_sentence(const MachineState& state) {
   const LeakEstimate& e = state.estimate;
   if (e.incompatible) {
     return fmt::format(
-        "{}: incompatible with the model: the coefficient would be {:.3g} ({:.3g} to {:.3g}), "
+        "{}: incompatible with the model: the coefficient would be {} ({} to {}), "
         "below zero by more than its error, so supply or valve have changed since the fit.{}",
-        name, e.coefficient, e.ci95.low, e.ci95.high, agreement_of(state));
+        name, significant(e.coefficient, 3), significant(e.ci95.low, 3),
+        significant(e.ci95.high, 3), agreement_of(state));
   }
   if (!e.has_share()) {
     return fmt::format(

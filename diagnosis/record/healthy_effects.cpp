@@ -15,8 +15,9 @@ auto fields(const model::Rig& rig) {
 }
 
 auto fields(const calib::Effect& effect) {
-  const auto& [kind, index, range, middle, curved, secant, followed, about] = effect;
-  return std::tuple(kind, index, range, middle, curved, secant, followed, about.key, about.size);
+  const auto& [kind, index, sign, range, middle, curved, secant, followed, about] = effect;
+  return std::tuple(kind, index, sign, range, middle, curved, secant, followed, about.key,
+                    about.size);
 }
 
 auto signal_of(const datasets::Condition& condition) {

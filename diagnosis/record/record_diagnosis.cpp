@@ -4,6 +4,9 @@
 
 #include <cmath>
 
+#include "common/readable.hpp"
+#include "common/significant.hpp"
+
 namespace rigcal::diagnosis {
 namespace {
 
@@ -23,23 +26,25 @@ void warn(RecordDiagnosis& record, const SignalErrors& errors, double healthy_m,
   const bool explained = record.explained_by_leak.value();
   if (explained && left > kNoticeable) {
     record.warnings.push_back(fmt::format(
-        "a leak explains all but {:.0f} % of the difference from the healthy model (rms {:.3g} "
-        "mm); the remaining {:.3g} mm exceed the noise: there may be another fault",
-        100.0 * left, 1e3 * fit.parity_rms_m, 1e3 * fit.misfit_rms_m));
+        "a leak explains all but {:.0f} % of the difference from the healthy model (rms {}"
+        "); the remaining {} exceed the noise: there may be another fault",
+        100.0 * left, readable(fit.parity_rms_m, "m", 3), readable(fit.misfit_rms_m, "m", 3)));
   }
   if (!explained) {
     record.warnings.push_back(fmt::format(
         "not explained by a leak, which reduces the difference from the healthy model only from "
-        "{:.3g} mm to {:.3g} mm rms; in healthy records it is {:.3g} mm. Something else is wrong "
+        "{} to {} rms; in healthy records it is {}. Something else is wrong "
         "(friction, valve, sensor), or the fit does not apply to this record",
-        1e3 * fit.parity_rms_m, 1e3 * fit.misfit_rms_m, 1e3 * healthy_m));
+        readable(fit.parity_rms_m, "m", 3), readable(fit.misfit_rms_m, "m", 3),
+        readable(healthy_m, "m", 3)));
   }
   if (estimate.incompatible) {
     record.warnings.push_back(
-        fmt::format("incompatible with the model: the coefficient would be {:.3g} ({:.3g} to "
-                    "{:.3g}), below zero by more than its error: the machine is faster than its "
+        fmt::format("incompatible with the model: the coefficient would be {} ({} to "
+                    "{}), below zero by more than its error: the machine is faster than its "
                     "healthy model, so supply or valve have changed since the fit",
-                    fit.coefficient, estimate.ci95.low, estimate.ci95.high));
+                    significant(fit.coefficient, 3), significant(estimate.ci95.low, 3),
+                    significant(estimate.ci95.high, 3)));
   }
   if (!estimate.has_share()) {
     record.warnings.push_back(

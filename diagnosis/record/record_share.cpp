@@ -59,6 +59,7 @@ SteadyLeak leak_in_record(const calib::ProblemCondition& condition, const model:
     Eigen::VectorXd result;
     if (run.sensitivities.empty()) return result;
     const auto& matrix = run.sensitivities[static_cast<std::size_t>(column)];
+    if (matrix.cols() == 0) return result;  // the weights take longer than the mean
     const std::vector<double> weights =
         metrics::mean_absolute_weights(times, counted(run.outputs, column, part));
     result.resize(matrix.cols());

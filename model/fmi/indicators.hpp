@@ -17,14 +17,24 @@ namespace rigcal::model {
 /// @param dx       time derivative at x
 template <std::size_t N>
 void plant_indicators(const LoadPressurePlant::Coefficients<double>& p, const PresentTerms& terms,
-                      const std::array<double, N>& /*x*/, const std::array<double, N>& /*dx*/,
+                      const std::array<double, N>& x, const std::array<double, N>& /*dx*/,
                       double spool_v, std::vector<double>& indicators) {
-  if (!terms.spool_shape) {
+  if (terms.spool_shape) {
+    indicators.push_back(spool_v + p.valve_offset_v - p.valve_dead_band_v);
+    indicators.push_back(spool_v + p.valve_offset_v + p.valve_dead_band_v);
+  } else {
     indicators.push_back(spool_v);
-    return;
   }
-  indicators.push_back(spool_v + p.valve_offset_v - p.valve_dead_band_v);
-  indicators.push_back(spool_v + p.valve_offset_v + p.valve_dead_band_v);
+  const double supply_pa =
+      terms.supply >= 0 ? x[static_cast<std::size_t>(terms.supply)] : p.supply_pressure_pa;
+  const PlantInput<double> in{spool_v, 0.0, supply_pa, 0.0};
+  if (terms.relief) {
+    for (const Output output : {Output::pressure_a, Output::pressure_b})
+      indicators.push_back(p.relief_pressure_pa -
+                           LoadPressurePlant::output(output, x, in, p, terms));
+  }
+  if (terms.pump_flow)
+    indicators.push_back(p.pump_flow_m3_per_s - asked_flow(p.supply_pressure_pa, in, p));
 }
 
 /// Appends the indicators of chambers, valve and pump. Pressures are relative to the tank pressure,
@@ -114,14 +124,12 @@ void plant_indicators(const LinkagePlant::Coefficients<double>& p, const Present
 template <typename Plant, typename P, std::size_t N>
 void friction_indicators(const P& p, const PresentTerms& terms, const std::array<double, N>& x,
                          std::vector<double>& indicators) {
-  if constexpr (requires { Plant::pressure_across(x); }) {
-    if (terms.seal_friction) indicators.push_back(Plant::pressure_across(x));
-  }
-  if (terms.bristles >= 0) indicators.push_back(x[Plant::velocity]);
+  if (terms.seal_friction) indicators.push_back(Plant::pressure_across(x));
+  const double v = Plant::piston_velocity(x, p);
+  if (terms.bristles >= 0) indicators.push_back(v);
   if (terms.film >= 0)
-    indicators.push_back(
-        steady_film(x[Plant::velocity], p.film_velocity_m_per_s, p.friction_smoothing_m_per_s) -
-        x[static_cast<std::size_t>(terms.film)]);
+    indicators.push_back(steady_film(v, p.film_velocity_m_per_s, p.friction_smoothing_m_per_s) -
+                         x[static_cast<std::size_t>(terms.film)]);
 }
 
 /// Appends the indicators for the limits of controller output and spool rate.

@@ -43,7 +43,6 @@ struct Chambers {
 
   /// Index of the state that an output equals, apart from sensor errors; std::nullopt if the output
   /// is not a pressure.
-  /// not a pressure.
   static constexpr std::optional<int> pressure_of(Output output) {
     if (output == Output::pressure_a) return pressure_a;
     if (output == Output::pressure_b) return pressure_b;
@@ -170,9 +169,8 @@ struct Chambers {
       flow_b = flow_b + positive_part(X(P_t - p_B)) * G;
     }
     if (terms.relief) {
-      const auto& G = p.relief_conductance_m3_per_s_pa;
-      flow_a = flow_a - positive_part(X(p_A - p.relief_pressure_pa)) * G;
-      flow_b = flow_b - positive_part(X(p_B - p.relief_pressure_pa)) * G;
+      flow_a = flow_a - relief_flow(p_A, p);
+      flow_b = flow_b - relief_flow(p_B, p);
     }
     return {flow_a, flow_b};
   }
@@ -181,6 +179,11 @@ struct Chambers {
   static X bulk_modulus(const X& pressure_pa, const P& p, const PresentTerms& terms) {
     if (!terms.air) return X(p.bulk_modulus_pa);
     return aerated_bulk_modulus(pressure_pa, p.bulk_modulus_pa, p.air_fraction, p.air_exponent);
+  }
+
+  template <typename X, std::size_t M>
+  static X pressure_across(const std::array<X, M>& x) {
+    return x[pressure_a] - x[pressure_b];
   }
 
   /// Force of the oil on the piston, outwards [N].
@@ -251,7 +254,7 @@ struct Chambers {
   static X pump_flow(const X& limit_pa, const std::array<X, M>& x, const PlantInput<X>& in,
                      const P& p, const PresentTerms& terms) {
     const X kept_pa = terms.load_sensing ? sensed_pressure(limit_pa, x, in, p, terms) : limit_pa;
-    const X asked = (kept_pa - in.supply_pressure_pa) / p.supply_resistance_pa_s_per_m3;
+    const X asked = asked_flow(kept_pa, in, p);
     if (!terms.pump_flow) return asked;
     const X largest = largest_flow(x, p, terms);
     return value_of(asked) > value_of(largest) ? largest : asked;
@@ -266,10 +269,7 @@ struct Chambers {
                        const PlantInput<X>& in, const P& p, const PresentTerms& terms) {
     X flow = pump_flow(limit_pa, x, in, p, terms) - taken;
     if (terms.bypass) flow = flow - bypass_flow(in, p, terms);
-    if (!terms.accumulator) return flow / p.supply_capacity_m3_per_pa;
-    return flow / (accumulator_capacity(in.supply_pressure_pa, p.accumulator_volume_m3,
-                                        p.accumulator_precharge_pa, p.accumulator_exponent) +
-                   p.supply_capacity_m3_per_pa);
+    return supply_rise(flow, in, p, terms);
   }
 };
 

@@ -13,10 +13,11 @@ namespace rigcal::model {
 
 /// Optional terms of a rig's model. An absent term costs no computing time.
 struct PresentTerms {
-  bool friction = false;         ///< Coulomb or breakaway friction was given
+  bool friction = false;         ///< any friction of piston and rod was given
   bool stribeck = false;         ///< breakaway friction was given
   bool seal_friction = false;    ///< friction grows with the pressure across the piston
   bool shaped_friction = false;  ///< friction depends on the pressure, or has pre-sliding
+  bool joint_friction = false;   ///< friction of a joint was given
   int bristles = -1;  ///< index of the force of the bristles; -1: friction without pre-sliding
   int film = -1;      ///< index of the thickness of the lubricant film; -1: steady friction
   bool orifice_leak = false;   ///< the leakage coefficient is not zero, or is free
@@ -252,8 +253,9 @@ inline Layout layout_of(const Rig& rig, const ParameterValues& values, std::span
   layout.terms.seal_friction = given("seal_friction");
   layout.terms.shaped_friction =
       layout.terms.seal_friction || layout.bristles >= 0 || layout.film >= 0;
-  layout.terms.friction = layout.terms.shaped_friction || layout.terms.stribeck ||
-                          given("coulomb_friction") || given("joint_friction");
+  layout.terms.friction =
+      layout.terms.shaped_friction || layout.terms.stribeck || given("coulomb_friction");
+  layout.terms.joint_friction = given("joint_friction");
   layout.terms.orifice_leak = acts("leakage_coefficient");
   layout.terms.leak_line = given("leakage_resistance");
   layout.terms.laminar_leak = acts("laminar_leakage");

@@ -15,12 +15,14 @@ namespace rigcal::model {
 /// A cylinder with two chambers that turns an arm, as on an excavator, driven by an electric or
 /// pilot-operated valve and a pump with limited flow.
 ///
-///   J omega' = D(theta) (A_A p_A - A_B p_B) - c omega - M_c(omega) + M_stops - M(theta) - M_ext
+///   J omega' = D(theta) (A_A p_A - A_B p_B - F_dry(D omega)) - c omega - M_c(omega) + M_stops
+///              - M(theta) - M_ext
 ///   p_A'     = beta(p_A) / V_A (Q_A - Q_leak - G_A (p_A - P_t) + Q_mA - A_A D omega)
 ///   p_B'     = beta(p_B) / V_B (Q_leak - Q_B - G_B (p_B - P_t) + Q_mB + A_B D omega)
 ///
-/// D is the lever arm: piston travel per angle, and therefore moment per force. Pressure in chamber
-/// A increases both the piston travel and the angle.
+/// D is the lever arm: piston travel per angle, and therefore moment per force. The piston moves at
+/// D omega, and its friction acts on the arm by the same lever. Pressure in chamber A increases
+/// both the piston travel and the angle.
 struct LinkagePlant : Chambers {
   static constexpr std::string_view kName = "linkage";  ///< in campaign files
   enum Motion {
@@ -170,10 +172,22 @@ struct LinkagePlant : Chambers {
                      least * value_of(p.area_b_m2))};
   }
 
-  /// Moment of dry friction [N m].
+  template <typename X, std::size_t M, typename C>
+  static X piston_velocity(const std::array<X, M>& x, const Coefficients<C>& p) {
+    return lever(x[angle], p) * x[angular_velocity];
+  }
+
+  /// Moment of dry friction in the joint [N m].
   template <typename X, typename C>
-  static X dry_friction(const X& omega, const Coefficients<C>& p) {
+  static X joint_friction(const X& omega, const Coefficients<C>& p) {
     return p.joint_friction_n_m * smooth_sign(omega, p.joint_friction_smoothing_rad_per_s);
+  }
+
+  /// Dry friction of piston and rod [N]. Not inlined, to keep the code of rigs without it short.
+  template <typename X, std::size_t M, typename C>
+  [[gnu::noinline]] static X rod_friction(const std::array<X, M>& x, const Coefficients<C>& p,
+                                          const PresentTerms& terms) {
+    return friction_of<LinkagePlant>(x, p, terms);
   }
 
   /// Moment that the actuator transmits to the arm [N m]: that of the pressures and stops, less dry
@@ -181,8 +195,11 @@ struct LinkagePlant : Chambers {
   template <typename X, std::size_t M, typename C>
   static X torque(const std::array<X, M>& x, const Coefficients<C>& p, const PresentTerms& terms) {
     const X& omega = x[angular_velocity];
-    const X moment = lever(x[angle], p) * piston_force(x, p) + stops_moment(x[angle], omega, p);
-    return terms.friction ? X(moment - dry_friction(omega, p)) : moment;
+    const X D = lever(x[angle], p);
+    X moment = D * piston_force(x, p) + stops_moment(x[angle], omega, p);
+    if (terms.joint_friction) moment = moment - joint_friction(omega, p);
+    if (terms.friction) moment = moment - D * rod_friction(x, p, terms);
+    return moment;
   }
 
   /// Time derivative of the state [rad/s, rad/s2, Pa/s, Pa/s].
@@ -193,7 +210,8 @@ struct LinkagePlant : Chambers {
     const X D = lever(x[angle], p);
     X moment = D * piston_force(x, p) - omega * p.joint_damping_n_m_s_per_rad -
                gravity_moment(x[angle], p) + stops_moment(x[angle], omega, p);
-    if (terms.friction) moment = moment - dry_friction(omega, p);
+    if (terms.joint_friction) moment = moment - joint_friction(omega, p);
+    if (terms.friction) moment = moment - D * rod_friction(x, p, terms);
     if (terms.external_load) moment = moment - in.external_load;
     const auto flow = chamber_flows(x, X(D * omega), valve_flows(x, in, p, terms), in, p, terms);
     const auto volume = volumes(x[angle], p);
@@ -233,7 +251,8 @@ struct LinkagePlant : Chambers {
       case Output::pressure_b:
         return x[pressure_b];
       case Output::force:
-        return piston_force(x, p);
+        return terms.friction ? X(piston_force(x, p) - rod_friction(x, p, terms))
+                              : piston_force(x, p);
       case Output::torque:
         return torque(x, p, terms);
       case Output::spool:

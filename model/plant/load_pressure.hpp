@@ -14,6 +14,8 @@ namespace rigcal::model {
 ///   m x''  = A P_L - b x' - k x - F_dry(x') - F_ext(x) - m_2 x_2''     eq. 12
 ///   P_L'   = (4 beta / V_t) (Q_L - Q_leak - A x')                      eq. 13
 ///
+/// The supply may give way. Both chambers share it equally, (P_s + P_L) / 2 and (P_s - P_L) / 2.
+///
 /// A plant consists of a parameter table (`Parameters`), a right-hand side and outputs.
 struct LoadPressurePlant {
   static constexpr std::string_view kName = "load_pressure";  ///< in campaign files
@@ -63,11 +65,13 @@ struct LoadPressurePlant {
   }
 
   /// Whether reversing the inputs reverses the states and this output. All terms are odd functions,
-  /// except those that act in one direction only and the lubricant film, which has no direction.
+  /// except those that act in one direction only, and the lubricant film and a supply that gives
+  /// way, which have no direction.
   /// The chamber pressures swap instead of changing sign.
   static bool reversible(Output output, const PresentTerms& terms) {
     return !terms.external_load && !terms.curved_load && !terms.load_table && !terms.valve_offset &&
-           terms.film < 0 && output != Output::pressure_a && output != Output::pressure_b;
+           terms.film < 0 && terms.supply < 0 && output != Output::pressure_a &&
+           output != Output::pressure_b;
   }
 
   /// Spool travel [m], eq. 6: x_v = k_sv u, with null shift and overlap.
@@ -88,6 +92,43 @@ struct LoadPressurePlant {
     return flow - P_L * p.valve_null_leakage_m3_per_s_pa;
   }
 
+  /// Flow that the valve takes from the supply [m3/s]: that to the load, in the direction of the
+  /// spool, and the leak of the closed edges. Not inlined, to keep the code of rigs with a constant
+  /// supply short.
+  template <typename X, std::size_t M, typename C>
+  [[gnu::noinline]] static X supply_flow(const std::array<X, M>& x, const PlantInput<X>& in,
+                                         const Coefficients<C>& p, const PresentTerms& terms) {
+    const X travel_m = spool(in, p, terms);
+    const X flow = model::servo_flow(travel_m, x[load_pressure], in.supply_pressure_pa,
+                                     p.valve_conductance, p.leakage_smoothing_pa);
+    const X taken = value_of(travel_m) < 0.0 ? X(-flow) : flow;
+    if (!terms.null_leak) return taken;
+    return taken + in.supply_pressure_pa * p.valve_null_leakage_m3_per_s_pa;
+  }
+
+  /// Time derivative of the supply pressure at the valve [Pa/s].
+  ///
+  /// @param limit_pa  pressure to which the pump is limited
+  /// @param taken     flow that the valve takes from the supply [m3/s]
+  template <typename X, std::size_t M, typename C>
+  [[gnu::noinline]] static X supply_rate(const X& limit_pa, const X& taken,
+                                         const std::array<X, M>& /*x*/, const PlantInput<X>& in,
+                                         const Coefficients<C>& p, const PresentTerms& terms) {
+    X flow = asked_flow(limit_pa, in, p);
+    if (terms.pump_flow && value_of(flow) > value_of(p.pump_flow_m3_per_s))
+      flow = X(p.pump_flow_m3_per_s);
+    return supply_rise(X(flow - taken), in, p, terms);
+  }
+
+  /// Servo flow that the relief valves of both chambers take from the load [m3/s]. Not inlined, to
+  /// keep the code of rigs without them short.
+  template <typename X, typename C>
+  [[gnu::noinline]] static X relieved_flow(const X& P_L, const PlantInput<X>& in,
+                                           const Coefficients<C>& p) {
+    const X& P_s = in.supply_pressure_pa;
+    return (relief_flow(X((P_s + P_L) * 0.5), p) - relief_flow(X((P_s - P_L) * 0.5), p)) * 0.5;
+  }
+
   /// Internal leakage across the piston [m3/s]: an orifice (eq. 11) and a laminar path.
   template <typename X, typename C>
   static X leakage_flow(const X& P_L, const Coefficients<C>& p, const PresentTerms& terms) {
@@ -100,6 +141,11 @@ struct LoadPressurePlant {
   template <typename X, std::size_t M>
   static X pressure_across(const std::array<X, M>& x) {
     return x[load_pressure];
+  }
+
+  template <typename X, std::size_t M, typename C>
+  static const X& piston_velocity(const std::array<X, M>& x, const Coefficients<C>& /*p*/) {
+    return x[velocity];
   }
 
   /// Time derivative of the state [m/s, m/s2, Pa/s].
@@ -119,7 +165,8 @@ struct LoadPressurePlant {
       if (terms.payload >= 0)
         force = force - payload_acceleration(x, position, terms, p) * p.payload_mass_kg;
     }
-    const X flow = servo_flow(P_L, in, p, terms) - leakage_flow(P_L, p, terms) - v * A;
+    X flow = servo_flow(P_L, in, p, terms) - leakage_flow(P_L, p, terms) - v * A;
+    if (terms.relief) flow = flow - relieved_flow(P_L, in, p);
     return {v, force * p.inverse_mass, flow * p.inverse_capacity};
   }
 

@@ -5,6 +5,7 @@
 #include <tuple>
 #include <type_traits>
 
+#include "model/plant/kinds.hpp"
 #include "model/plant/plants.hpp"
 
 namespace rigcal::model {
@@ -19,13 +20,28 @@ constexpr auto table_of(const Fields& fields) {
 template <typename Plant>
 constexpr auto kTable = table_of(Plant::template fields<double>());
 
+/// Compares the kinds of all quantities of a plant. A row in metres that belongs to an angle does
+/// not compile.
+template <typename Plant>
+constexpr std::span<const ParameterSpec> checked_table() {
+  static_assert(are_named_by_units(kTable<Plant>), "a name does not end in the unit of its row");
+  static_assert(motion_agrees(Plant::kStateRows), "the second state is not the rate of the first");
+  static_assert(sensors_agree(kTable<Plant>, Plant::kStateRows),
+                "a sensor has another kind than its quantity");
+  static_assert(initial_values_agree(kTable<Plant>, Plant::kStateRows),
+                "an initial value has another kind than its state");
+  static_assert(gains_agree(kTable<Plant>, Plant::kStateRows),
+                "a gain or a filter has another kind than the quantity of its loop");
+  return kTable<Plant>;
+}
+
 struct PlantRow {
   std::string_view name;
   std::span<const ParameterSpec> parameters;
 };
 template <typename... Plant>
 constexpr std::array<PlantRow, sizeof...(Plant)> rows_of(std::type_identity<std::tuple<Plant...>>) {
-  return {PlantRow{Plant::kName, kTable<Plant>}...};
+  return {PlantRow{Plant::kName, checked_table<Plant>()}...};
 }
 constexpr auto kPlants = rows_of(std::type_identity<Plants>());
 

@@ -15,8 +15,8 @@ struct ParameterField {
   ParameterSpec spec;
 };
 
-/// Parameters that all plants share: piston, valve, friction, leakage, controller, sensors. In SI
-/// units; each name ends in its unit.
+/// Parameters that all plants share: piston, valve, friction, leakage, supply, controller, sensors.
+/// In SI units; each name ends in its unit.
 ///
 /// @tparam T  double, or a dual number if derivatives are needed
 template <typename T>
@@ -73,6 +73,14 @@ struct CommonParameters {
   T payload_damping_ratio{};
   T laminar_leakage_m3_per_s_pa{};
   T leakage_resistance_pa_s_per_m3{};
+  T supply_resistance_pa_s_per_m3{};
+  T supply_capacity_m3_per_pa{};
+  T pump_flow_m3_per_s{};
+  T accumulator_volume_m3{};
+  T accumulator_precharge_pa{};
+  T accumulator_exponent{};
+  T relief_pressure_pa{};
+  T relief_conductance_m3_per_s_pa{};
   T transport_delay_s{};
   T position_gain{};
   T load_pressure_gain{};
@@ -251,6 +259,50 @@ constexpr auto load_rows() {
   };
 }
 
+/// Supply whose pressure drops with its flow.
+template <template <typename> class Parameters, typename T>
+constexpr auto supply_rows() {
+  using P = Parameters<T>;
+  using K = ParameterKind;
+  using F = ParameterField<P, T>;
+  return std::array{
+      // clang-format off
+      F{&P::supply_resistance_pa_s_per_m3, {"supply_resistance", "supply_resistance_pa_s_per_m3", "R_s", "Pa s/m3", "hydraulic resistance between the source and the valve", "docs/model.md", K::term, 1e-3, 1e15, 0.0}},
+      F{&P::supply_capacity_m3_per_pa, {"supply_capacity", "supply_capacity_m3_per_pa", "C_s", "m3/Pa", "volume that hose and accumulator at the valve take up per unit of pressure", "docs/model.md", K::term, 1e-18, 1e-3, 0.0}},
+      // clang-format on
+  };
+}
+
+/// Largest flow of the pump.
+template <template <typename> class Parameters, typename T>
+constexpr auto pump_rows() {
+  using P = Parameters<T>;
+  using K = ParameterKind;
+  using F = ParameterField<P, T>;
+  return std::array{
+      // clang-format off
+      F{&P::pump_flow_m3_per_s, {"pump_flow", "pump_flow_m3_per_s", "Q_1", "m3/s", "largest flow of the pump, which is limited to supply_pressure", "docs/model.md", K::term, 1e-9, 10, 0.0}},
+      // clang-format on
+  };
+}
+
+/// Accumulator and relief valves.
+template <template <typename> class Parameters, typename T>
+constexpr auto relief_rows() {
+  using P = Parameters<T>;
+  using K = ParameterKind;
+  using F = ParameterField<P, T>;
+  return std::array{
+      // clang-format off
+      F{&P::accumulator_volume_m3, {"accumulator_volume", "accumulator_volume_m3", "V_0", "m3", "gas volume of an accumulator at the valve, at its precharge", "docs/model.md", K::term, 1e-9, 10, 0.0}},
+      F{&P::accumulator_precharge_pa, {"accumulator_precharge", "accumulator_precharge_pa", "p_g", "Pa", "precharge pressure of that gas, without oil in the accumulator", "docs/model.md", K::term, 1e3, 1e8, 0.0}},
+      F{&P::accumulator_exponent, {"accumulator_exponent", "accumulator_exponent", "n_g", "1", "polytropic exponent of that gas", "docs/model.md", K::term, 1, 2, 1.4}},
+      F{&P::relief_pressure_pa, {"relief_pressure", "relief_pressure_pa", "p_rv", "Pa", "pressure at which the relief valve of each chamber begins to open to the tank", "docs/model.md", K::term, 1e4, 1e9, 0.0}},
+      F{&P::relief_conductance_m3_per_s_pa, {"relief_conductance", "relief_conductance_m3_per_s_pa", "G_r", "m3/(s Pa)", "conductance of that valve: flow per pressure above relief_pressure", "docs/model.md", K::term, 0, 1, 0.0}},
+      // clang-format on
+  };
+}
+
 /// Dead time, sensors and initial motion, which the solver needs for every plant.
 template <template <typename> class Parameters, typename T>
 constexpr auto sensor_rows() {
@@ -355,8 +407,9 @@ constexpr auto load_pressure_fields() {
       // clang-format on
   };
   return joined(motion_rows<LoadPressureParameters, T>(), cylinder,
-                shared_rows<LoadPressureParameters, T>(), initial,
-                controller_rows<LoadPressureParameters, T>());
+                shared_rows<LoadPressureParameters, T>(), supply_rows<LoadPressureParameters, T>(),
+                pump_rows<LoadPressureParameters, T>(), relief_rows<LoadPressureParameters, T>(),
+                initial, controller_rows<LoadPressureParameters, T>());
 }
 
 template <typename T>

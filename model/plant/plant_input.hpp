@@ -43,6 +43,31 @@ X internal_leak(const X& load_pressure_pa, const P& p, const PresentTerms& terms
   return laminar + orifice_leakage(load_pressure_pa, p.leak_conductance, p.leakage_smoothing_pa);
 }
 
+/// Flow from the source to the valve that keeps a pressure at the pump [m3/s].
+template <typename X, typename C>
+X asked_flow(const X& kept_pa, const PlantInput<X>& in, const CommonParameters<C>& p) {
+  return (kept_pa - in.supply_pressure_pa) / p.supply_resistance_pa_s_per_m3;
+}
+
+/// Time derivative of the supply pressure at the valve [Pa/s], where oil and accumulator take up a
+/// flow.
+///
+/// @param flow  of the pump, less what the valve takes [m3/s]
+template <typename X, typename C>
+X supply_rise(const X& flow, const PlantInput<X>& in, const CommonParameters<C>& p,
+              const PresentTerms& terms) {
+  if (!terms.accumulator) return flow / p.supply_capacity_m3_per_pa;
+  return flow / (accumulator_capacity(in.supply_pressure_pa, p.accumulator_volume_m3,
+                                      p.accumulator_precharge_pa, p.accumulator_exponent) +
+                 p.supply_capacity_m3_per_pa);
+}
+
+/// Flow through the relief valve of a chamber to the tank [m3/s].
+template <typename X, typename C>
+X relief_flow(const X& chamber_pa, const CommonParameters<C>& p) {
+  return positive_part(X(chamber_pa - p.relief_pressure_pa)) * p.relief_conductance_m3_per_s_pa;
+}
+
 /// Sliding friction where the part above Coulomb's fades with the film [N]. Not inlined, to keep
 /// the code of rigs without a film short.
 template <typename X, typename C>
@@ -51,11 +76,12 @@ template <typename X, typename C>
 }
 
 /// Time derivative of the relative thickness of the lubricant film [1/s].
-template <typename Plant, typename X, std::size_t M, typename C>
-[[gnu::noinline]] X film_rate_of(const std::array<X, M>& x, const CommonParameters<C>& p,
-                                 const PresentTerms& terms) {
+///
+/// @tparam Plant  provides the velocity of the piston
+template <typename Plant, typename X, std::size_t M, typename P>
+[[gnu::noinline]] X film_rate_of(const std::array<X, M>& x, const P& p, const PresentTerms& terms) {
   const X& film = x[static_cast<std::size_t>(terms.film)];
-  const X& v = x[static_cast<std::size_t>(Plant::velocity)];
+  const X& v = Plant::piston_velocity(x, p);
   const X steady = steady_film(v, p.film_velocity_m_per_s, p.friction_smoothing_m_per_s);
   const bool grows = value_of(film) < value_of(steady);
   return film_rate(film, steady, v, grows ? p.film_growth_time_s : p.film_decay_time_s,
@@ -65,11 +91,10 @@ template <typename Plant, typename X, std::size_t M, typename C>
 /// Magnitude of the dry friction while the piston slides [N]. Seal friction grows with the pressure
 /// that energises the seals.
 ///
-/// @tparam Plant  provides the velocity and the pressure across the piston
-template <typename Plant, typename X, std::size_t M, typename C>
-X sliding_friction_of(const std::array<X, M>& x, const CommonParameters<C>& p,
-                      const PresentTerms& terms) {
-  const X& v = x[static_cast<std::size_t>(Plant::velocity)];
+/// @tparam Plant  provides the velocity of the piston and the pressure across it
+template <typename Plant, typename X, std::size_t M, typename P>
+X sliding_friction_of(const std::array<X, M>& x, const P& p, const PresentTerms& terms) {
+  const X& v = Plant::piston_velocity(x, p);
   X sliding_n = terms.stribeck ? sliding_friction(v, p.coulomb_friction_n, p.stribeck_friction_n,
                                                   p.stribeck_velocity_m_per_s)
                                : X(p.coulomb_friction_n);
@@ -83,18 +108,17 @@ X sliding_friction_of(const std::array<X, M>& x, const CommonParameters<C>& p,
 }
 
 /// Time derivative of the bristle force [N/s].
-template <typename Plant, typename X, std::size_t M, typename C>
-X bristle_rate_of(const std::array<X, M>& x, const CommonParameters<C>& p,
-                  const PresentTerms& terms) {
-  return bristle_rate(x[static_cast<std::size_t>(terms.bristles)],
-                      x[static_cast<std::size_t>(Plant::velocity)],
+template <typename Plant, typename X, std::size_t M, typename P>
+X bristle_rate_of(const std::array<X, M>& x, const P& p, const PresentTerms& terms) {
+  const X& v = Plant::piston_velocity(x, p);
+  return bristle_rate(x[static_cast<std::size_t>(terms.bristles)], v,
                       sliding_friction_of<Plant>(x, p, terms), p.bristle_stiffness_n_per_m);
 }
 
 /// Dry friction with seal friction or pre-sliding [N]. Not inlined, to keep the code of rigs
 /// without these terms short.
-template <typename Plant, typename X, std::size_t M, typename C>
-[[gnu::noinline]] X shaped_friction(const std::array<X, M>& x, const CommonParameters<C>& p,
+template <typename Plant, typename X, std::size_t M, typename P>
+[[gnu::noinline]] X shaped_friction(const std::array<X, M>& x, const P& p,
                                     const PresentTerms& terms) {
   if constexpr (M > static_cast<std::size_t>(Plant::kStates)) {
     if (terms.bristles >= 0)
@@ -102,15 +126,16 @@ template <typename Plant, typename X, std::size_t M, typename C>
              bristle_rate_of<Plant>(x, p, terms) *
                  (p.bristle_damping_n_s_per_m / p.bristle_stiffness_n_per_m);
   }
-  return sliding_friction_of<Plant>(x, p, terms) *
-         smooth_sign(x[static_cast<std::size_t>(Plant::velocity)], p.friction_smoothing_m_per_s);
+  const X& v = Plant::piston_velocity(x, p);
+  return sliding_friction_of<Plant>(x, p, terms) * smooth_sign(v, p.friction_smoothing_m_per_s);
 }
 
 /// Dry friction of piston and rod [N], with any of the optional terms.
-template <typename Plant, typename X, std::size_t M, typename C>
-X friction_of(const std::array<X, M>& x, const CommonParameters<C>& p, const PresentTerms& terms) {
+template <typename Plant, typename X, std::size_t M, typename P>
+X friction_of(const std::array<X, M>& x, const P& p, const PresentTerms& terms) {
   if (terms.shaped_friction) return shaped_friction<Plant>(x, p, terms);
-  return friction(x[static_cast<std::size_t>(Plant::velocity)], p, terms);
+  const X& v = Plant::piston_velocity(x, p);
+  return friction(v, p, terms);
 }
 
 /// Load of the table at x [N]. Not inlined, to keep the code of rigs without it short.

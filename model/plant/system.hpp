@@ -219,11 +219,16 @@ class System {
       states[payload + 1] = states[Plant::velocity];
     }
     // Film and bristles start as if the motion had been steady for long.
-    if (layout_.film >= 0)
-      states[static_cast<std::size_t>(layout_.film)] = steady_film(
-          states[Plant::velocity], p.film_velocity_m_per_s, p.friction_smoothing_m_per_s);
-    if (layout_.bristles >= 0)
-      states[static_cast<std::size_t>(layout_.bristles)] = starting_friction(states, p);
+    if constexpr (requires { Plant::piston_velocity(states, p); }) {
+      const C v = Plant::piston_velocity(states, p);
+      if (layout_.film >= 0)
+        states[static_cast<std::size_t>(layout_.film)] =
+            steady_film(v, p.film_velocity_m_per_s, p.friction_smoothing_m_per_s);
+      if (layout_.bristles >= 0)
+        states[static_cast<std::size_t>(layout_.bristles)] =
+            sliding_friction_of<Plant>(states, p, layout_.terms) *
+            smooth_sign(v, p.friction_smoothing_m_per_s);
+    }
     if (given && layout_.integral >= 0)
       states[static_cast<std::size_t>(layout_.integral)] = p.initial_integral_v;
     if (layout_.reference >= 0)  // the filtered rate begins at zero
@@ -247,16 +252,6 @@ class System {
       }
     }
     return states;
-  }
-
-  /// Force of the bristles in steady motion at the velocity of the states [N].
-  C starting_friction(const X& states, const Coefficients<C>& p) const {
-    const C& v = states[Plant::velocity];
-    const C force_n = friction(v, p, layout_.terms);
-    if (layout_.film < 0) return force_n;
-    const C coulomb_n = p.coulomb_friction_n * smooth_sign(v, p.friction_smoothing_m_per_s);
-    return coulomb_n +
-           (force_n - coulomb_n) * (1.0 - states[static_cast<std::size_t>(layout_.film)]);
   }
 
   /// Sets the memory of the hoses to its value after an instantaneous rise to their present
@@ -761,7 +756,7 @@ class System {
           dx[payload + 1] = dx[payload + 1] - input_value(by, *base_acceleration_, t, false);
       }
     }
-    if constexpr (requires { Plant::pressure_across(x); }) {
+    if constexpr (requires { Plant::piston_velocity(x, p); }) {
       if (layout_.bristles >= 0)
         dx[static_cast<std::size_t>(layout_.bristles)] =
             bristle_rate_of<Plant>(x, p, layout_.terms);
@@ -775,14 +770,14 @@ class System {
         dx[static_cast<std::size_t>(layout_.hoses) + 1] = rates[1];
       }
     }
-    if constexpr (requires { p.supply_capacity_m3_per_pa; }) {
+    if constexpr (requires { Plant::supply_flow(x, in, p, layout_.terms); }) {
       if (layout_.supply >= 0) {
         dx[static_cast<std::size_t>(layout_.supply)] =
             Plant::supply_rate(source_pressure(by, t), Plant::supply_flow(x, in, p, layout_.terms),
                                x, in, p, layout_.terms);
       }
     }
-    if constexpr (requires { p.pump_flow_m3_per_s; }) {
+    if constexpr (requires { p.pump_delay_s; }) {
       if (layout_.pump >= 0)
         dx[static_cast<std::size_t>(layout_.pump)] = Plant::demand_rate(x, in, p, layout_.terms);
     }

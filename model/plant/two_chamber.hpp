@@ -109,9 +109,9 @@ struct TwoChamberPlant : Chambers {
     return q.supply_to_a + q.supply_to_b;
   }
 
-  template <typename X, std::size_t M>
-  static X pressure_across(const std::array<X, M>& x) {
-    return x[pressure_a] - x[pressure_b];
+  template <typename X, std::size_t M, typename C>
+  static const X& piston_velocity(const std::array<X, M>& x, const Coefficients<C>& /*p*/) {
+    return x[velocity];
   }
 
   /// Force of both stops on the piston, positive outwards [N].

@@ -41,8 +41,6 @@ struct TwoChamberParameters : CommonParameters<T> {
   T hose_capacity_b_m3_per_pa{};
   T hose_yield_pa{};
   T hose_yield_ratio{};
-  T supply_resistance_pa_s_per_m3{};
-  T supply_capacity_m3_per_pa{};
   T pilot_gain_m_per_pa{};
   T pilot_dead_band_pa{};
   T pilot_range_pa{};
@@ -53,7 +51,6 @@ struct TwoChamberParameters : CommonParameters<T> {
   T return_line_resistance_pa_s_per_m3{};
   T bypass_opening_m{};
   T bypass_range_pa{};
-  T pump_flow_m3_per_s{};
   T pump_second_flow_m3_per_s{};
   T pump_first_rate_m3_per_s2{};
   T pump_delay_s{};
@@ -68,11 +65,6 @@ struct TwoChamberParameters : CommonParameters<T> {
   T compensator_pressure_pa{};
   T valve_bypass_range_v{};
   T load_sensing_margin_pa{};
-  T accumulator_volume_m3{};
-  T accumulator_precharge_pa{};
-  T accumulator_exponent{};
-  T relief_pressure_pa{};
-  T relief_conductance_m3_per_s_pa{};
   T initial_pressure_a_pa{};
   T initial_pressure_b_pa{};
 };
@@ -95,7 +87,7 @@ constexpr auto chamber_rows() {
   };
 }
 
-/// Optional terms for stops, edges, chambers, hoses and supply.
+/// Optional terms for stops, edges, chambers and hoses.
 template <template <typename> class Parameters, typename T>
 constexpr auto chamber_term_rows() {
   using P = Parameters<T>;
@@ -125,8 +117,6 @@ constexpr auto chamber_term_rows() {
       F{&P::hose_capacity_b_m3_per_pa, {"hose_capacity_b", "hose_capacity_b_m3_per_pa", "C_hB", "m3/Pa", "volume that the hose of chamber B takes up per unit of pressure once it yields", "docs/model.md", K::term, 0, 1e-6, 0.0}},
       F{&P::hose_yield_pa, {"hose_yield", "hose_yield_pa", "p_h", "Pa", "change of pressure after a reversal over which the hoses begin to yield", "docs/model.md", K::term, 1e3, 1e9, 0.0}},
       F{&P::hose_yield_ratio, {"hose_yield_ratio", "hose_yield_ratio", "kappa_h", "1", "increase of hose_yield as a fraction of the absolute pressure", "docs/model.md", K::term, 1e-3, 100, 0.0}},
-      F{&P::supply_resistance_pa_s_per_m3, {"supply_resistance", "supply_resistance_pa_s_per_m3", "R_s", "Pa s/m3", "hydraulic resistance between the source and the valve", "docs/model.md", K::term, 1e-3, 1e15, 0.0}},
-      F{&P::supply_capacity_m3_per_pa, {"supply_capacity", "supply_capacity_m3_per_pa", "C_s", "m3/Pa", "volume that hose and accumulator at the valve take up per unit of pressure", "docs/model.md", K::term, 1e-18, 1e-3, 0.0}},
       // clang-format on
   };
 }
@@ -143,10 +133,10 @@ constexpr auto electric_gain_rows() {
   };
 }
 
-/// Optional terms for a valve that is driven by a pilot pressure, meters in and out differently or
-/// has its own opening law, and for pump, accumulator and check valves.
+/// Optional terms for a valve that is driven by a pilot pressure or meters in and out differently,
+/// and for an open centre.
 template <template <typename> class Parameters, typename T>
-constexpr auto metering_rows() {
+constexpr auto pilot_rows() {
   using P = Parameters<T>;
   using K = ParameterKind;
   using F = ParameterField<P, T>;
@@ -162,7 +152,18 @@ constexpr auto metering_rows() {
       F{&P::return_line_resistance_pa_s_per_m3, {"return_line_resistance", "return_line_resistance_pa_s_per_m3", "R_t", "Pa s/m3", "laminar resistance of the line to the tank, including filter and cooler", "docs/model.md", K::term, 0, 1e13, 0.0}},
       F{&P::bypass_opening_m, {"bypass_opening", "bypass_opening_m", "l_0", "m", "spool travel at which an edge is as wide open as the path from pump to tank in neutral (open centre)", "docs/model.md", K::term, 1e-9, 10, 0.0}},
       F{&P::bypass_range_pa, {"bypass_range", "bypass_range_pa", "p_0", "Pa", "pilot pressure beyond the dead band at which the path from pump to tank is closed", "docs/model.md", K::term, 1e3, 1e8, 1e6, false}},
-      F{&P::pump_flow_m3_per_s, {"pump_flow", "pump_flow_m3_per_s", "Q_1", "m3/s", "largest flow of the pump, which is limited to supply_pressure", "docs/model.md", K::term, 1e-9, 10, 0.0}},
+      // clang-format on
+  };
+}
+
+/// Optional terms for a pump of two stages, the shape of an electric valve, and load sensing.
+template <template <typename> class Parameters, typename T>
+constexpr auto opening_rows() {
+  using P = Parameters<T>;
+  using K = ParameterKind;
+  using F = ParameterField<P, T>;
+  return std::array{
+      // clang-format off
       F{&P::pump_second_flow_m3_per_s, {"pump_second_flow", "pump_second_flow_m3_per_s", "Q_2", "m3/s", "largest flow of the pump after the valve has been open for pump_delay", "docs/model.md", K::term, 1e-9, 10, 0.0}},
       F{&P::pump_first_rate_m3_per_s2, {"pump_first_rate", "pump_first_rate_m3_per_s2", "Q_1'", "m3/s2", "increase of the first flow per time of demand", "docs/model.md", K::term, 0, 10, 0.0}},
       F{&P::pump_delay_s, {"pump_delay", "pump_delay_s", "T_2", "s", "time from the opening of the valve until the flow is halfway between both", "docs/model.md", K::term, 1e-3, 100, 0.0}},
@@ -177,13 +178,15 @@ constexpr auto metering_rows() {
       F{&P::compensator_pressure_pa, {"compensator_pressure", "compensator_pressure_pa", "p_c", "Pa", "pressure drop that a compensator maintains across the edges from the supply, so that their flow does not depend on the load", "docs/model.md", K::term, 1e4, 1e8, 0.0}},
       F{&P::valve_bypass_range_v, {"valve_bypass_range", "valve_bypass_range_v", "u_b", "V", "voltage beyond the dead band at which the path from pump to tank is closed", "docs/model.md", K::term, 1e-3, 1e3, 10.0, false}},
       F{&P::load_sensing_margin_pa, {"load_sensing_margin", "load_sensing_margin_pa", "p_LS", "Pa", "margin of the pump pressure over that of the driven chamber (load sensing), up to supply_pressure", "docs/model.md", K::term, 0, 1e8, 0.0}},
-      F{&P::accumulator_volume_m3, {"accumulator_volume", "accumulator_volume_m3", "V_0", "m3", "gas volume of an accumulator at the valve, at its precharge", "docs/model.md", K::term, 1e-9, 10, 0.0}},
-      F{&P::accumulator_precharge_pa, {"accumulator_precharge", "accumulator_precharge_pa", "p_g", "Pa", "precharge pressure of that gas, without oil in the accumulator", "docs/model.md", K::term, 1e3, 1e8, 0.0}},
-      F{&P::accumulator_exponent, {"accumulator_exponent", "accumulator_exponent", "n_g", "1", "polytropic exponent of that gas", "docs/model.md", K::term, 1, 2, 1.4}},
-      F{&P::relief_pressure_pa, {"relief_pressure", "relief_pressure_pa", "p_rv", "Pa", "pressure at which the relief valve of each chamber begins to open to the tank", "docs/model.md", K::term, 1e4, 1e9, 0.0}},
-      F{&P::relief_conductance_m3_per_s_pa, {"relief_conductance", "relief_conductance_m3_per_s_pa", "G_r", "m3/(s Pa)", "conductance of that valve: flow per pressure above relief_pressure", "docs/model.md", K::term, 0, 1, 0.0}},
       // clang-format on
   };
+}
+
+/// Optional terms for valve, pump, accumulator and check valves.
+template <template <typename> class Parameters, typename T>
+constexpr auto metering_rows() {
+  return joined(pilot_rows<Parameters, T>(), pump_rows<Parameters, T>(),
+                opening_rows<Parameters, T>(), relief_rows<Parameters, T>());
 }
 
 /// Initial pressures of both chambers.
@@ -224,8 +227,9 @@ constexpr auto two_chamber_fields() {
       rows_without(oil_rows<TwoChamberParameters, T>(), kElectricGain),
       electric_gain_rows<TwoChamberParameters, T>(), valve_rows<TwoChamberParameters, T>(),
       load_rows<TwoChamberParameters, T>(), sensor_rows<TwoChamberParameters, T>(),
-      chamber_term_rows<TwoChamberParameters, T>(), metering_rows<TwoChamberParameters, T>(),
-      chamber_initial_rows<TwoChamberParameters, T>(), controller_rows<TwoChamberParameters, T>());
+      chamber_term_rows<TwoChamberParameters, T>(), supply_rows<TwoChamberParameters, T>(),
+      metering_rows<TwoChamberParameters, T>(), chamber_initial_rows<TwoChamberParameters, T>(),
+      controller_rows<TwoChamberParameters, T>());
 }
 
 template <typename T>

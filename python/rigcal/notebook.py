@@ -67,7 +67,8 @@ def _figure(rows: int = 1, **options: Any) -> tuple[Figure, Any]:
 
 
 def _plot_simulation(result: Simulation, signals: list[str] | None) -> Figure:
-    chosen = signals if signals is not None else ["position_m"]
+    motion = "angle_rad" if "angle_rad" in result.signals else "position_m"  # what the rig moves
+    chosen = signals if signals is not None else [motion]
     for name in chosen:
         if name not in result.signals:
             raise KeyError(_suggested(name, list(result.signals)).replace("table", "signal"))

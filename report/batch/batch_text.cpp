@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <array>
 
+#include "common/significant.hpp"
 #include "report/batch/batch.hpp"
 #include "report/store/csv_columns.hpp"
 #include "report/text/readable.hpp"
@@ -76,9 +77,12 @@ std::string trend_sentence(const StoredRigTrend& trend) {
   const calib::EstimateTrend& along = trend.series.along_date;
   if (!along.slope || !along.ci95)
     return fmt::format("{}: {}.", trend_name(trend), along.reason.value_or(""));
-  const std::string unit = trend.unit == "1" ? "" : typographic(trend.unit) + " ";
-  return fmt::format("{}: {:+.3g} {}per day ({:.3g} to {:.3g}): {}.", trend_name(trend),
-                     *along.slope, unit, along.ci95->low, along.ci95->high,
+  const ReadableUnit unit = readable_unit(*along.slope, trend.unit);
+  const auto number = [&](double value) { return significant(value / unit.si, 3); };
+  return fmt::format("{}: {}{}{}{} per day ({} to {}): {}.", trend_name(trend),
+                     *along.slope < 0.0 ? "" : "+", number(*along.slope),
+                     unit.name.empty() ? "" : " ", unit.name, number(along.ci95->low),
+                     number(along.ci95->high),
                      is_significant(trend) ? "significant trend" : "no significant trend");
 }
 

@@ -176,11 +176,6 @@ struct Gallery {
   std::vector<Figure> figures = {};
   bool wide = false;
 };
-/// Small pictures of similar items, each with its verdict.
-struct Tiles {
-  std::vector<Tile> tiles;
-};
-
 /// The beginning of a page: the verdict as a badge, and a sentence with the key numbers.
 struct Verdict {
   Badge badge;
@@ -238,9 +233,9 @@ struct Sketches {
 struct Fold;
 struct Article;
 struct Rendered;
-using Block = std::variant<Paragraph, Heading, List, Facts, Table, Figure, Gallery, Tiles, Verdict,
-                           Doubts, Aspects, Signatures, Command, LivePlot, LiveSeries, Sketches,
-                           Fold, Article, Rendered>;
+using Block =
+    std::variant<Paragraph, Heading, List, Facts, Table, Figure, Gallery, Verdict, Doubts, Aspects,
+                 Signatures, Command, LivePlot, LiveSeries, Sketches, Fold, Article, Rendered>;
 using Blocks = std::vector<Block>;
 /// Content that the reader can unfold. It is printed unfolded.
 struct Fold {

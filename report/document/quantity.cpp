@@ -5,20 +5,32 @@
 #include <algorithm>
 
 #include "common/significant.hpp"
+#include "metrics/metric_table.hpp"
 #include "report/text/readable.hpp"
 
 namespace rigcal::report::doc {
 
+namespace {
+
+/// Numbers with at most three digits are measured or computed, so that their zeros count. Those
+/// with more may be the user's, such as a limit, and are shown as they were typed.
+std::string digits_of(double value, int digits) {
+  constexpr int kMeasured = 3;
+  return digits <= kMeasured ? measured(value, digits) : significant(value, digits);
+}
+
+}  // namespace
+
 Quantity in_unit(const Number& number, double si_per_unit, int digits) {
   if (!number.value) return {};
-  return {number.value, significant(*number.value / si_per_unit, digits)};
+  return {number.value, digits_of(*number.value / si_per_unit, digits)};
 }
 
 Quantity readable(const Number& number, std::string_view si_unit, int digits) {
   if (!number.value) return {};
   if (!std::isfinite(*number.value)) return {number.value, "-"};
   const ReadableUnit unit = readable_unit(*number.value, si_unit);
-  return {number.value, significant(*number.value / unit.si, digits), std::string(unit.name)};
+  return {number.value, digits_of(*number.value / unit.si, digits), std::string(unit.name)};
 }
 
 Quantity agreement(const Number& number) {
@@ -26,16 +38,11 @@ Quantity agreement(const Number& number) {
   return {number.value, agreement_text(*number.value)};
 }
 
-Quantity score(std::string_view metric, const Number& number) {
-  if (metric == "absolute_error_percent" || !number.value) return in_unit(number, 1.0, 4);
-  constexpr int kLeast = 3;
-  constexpr int kMost = 10;
-  const double missing = std::abs(1.0 - *number.value);
-  const int count =
-      missing > 0.0
-          ? std::clamp(static_cast<int>(std::ceil(-std::log10(missing))) + 1, kLeast, kMost)
-          : kLeast;
-  return {number.value, fmt::format("{:.{}f}", *number.value, count)};
+Quantity score(std::string_view metric, const Number& number, const std::optional<double>& limit) {
+  if (!number.value) return {};
+  const metrics::MetricSpec* spec = metrics::find_metric(metric);
+  if (spec == nullptr) return in_unit(number, 1.0, 4);
+  return {number.value, metrics::score_text(*spec, *number.value, limit)};
 }
 
 Quantity decimals(const Number& number, int count) {

@@ -40,9 +40,9 @@ Quantity in_unit(const Number& value_si, double si_per_unit, int digits = 5);
 Quantity readable(const Number& value_si, std::string_view si_unit, int digits = 5);
 /// Formats rho2, R or CCC: "0.9996", "> 0.9999".
 Quantity agreement(const Number& value);
-/// Formats a score for its metric, with enough decimals to distinguish it from 1. Errors in percent
-/// have four digits.
-Quantity score(std::string_view metric, const Number& value);
+/// Formats a score as metrics::score_text() does.
+Quantity score(std::string_view metric, const Number& value,
+               const std::optional<double>& limit = {});
 /// Formats a number with `count` decimals, never as "-0.00".
 Quantity decimals(const Number& value, int count);
 

@@ -272,15 +272,6 @@ void add(const Gallery& gallery, std::string& page) {
   page += "</div>\n";
 }
 
-void add(const Tiles& tiles, std::string& page) {
-  page += "<div class=\"overview\">\n";
-  for (const Tile& tile : tiles.tiles) {
-    add_tile(tile, page);
-    page += "\n";
-  }
-  page += "</div>\n";
-}
-
 void add(const Verdict& verdict, std::string& page) {
   page += fmt::format(
       "<div class=\"verdict {}\">\n<p class=\"word\">{}</p>\n<div>\n<p class=\"sentence\">{}</p>\n",

@@ -88,10 +88,6 @@ class Terminal {
                 for (const Figure& figure : gallery.figures)
                   if (!figure.reading.empty()) add_wrapped(figure.reading, 2);
               },
-              [&](const Tiles& tiles) {
-                for (const Tile& tile : tiles.tiles)
-                  add_wrapped(fmt::format("{}", fmt::join(lines_of(tile), ", ")), 2);
-              },
               [&](const Fold& fold) {
                 text_ += "\n" + in_colour(fold.summary, "1") + "\n";
                 for (const Block& inner : fold.blocks)
@@ -160,7 +156,6 @@ class Terminal {
               return std::any_of(gallery.figures.begin(), gallery.figures.end(),
                                  [](const Figure& figure) { return !figure.reading.empty(); });
             },
-            [](const Tiles& tiles) { return !tiles.tiles.empty(); },
             [&](const Fold& fold) {
               return std::any_of(fold.blocks.begin(), fold.blocks.end(), [&](const Block& inner) {
                 return (is_open(fold) || is_warning(inner)) && shows(inner);

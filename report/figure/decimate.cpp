@@ -86,6 +86,27 @@ std::vector<double> thinned(std::span<const double> values, const Buckets& bucke
   return thinned_where(values, values, buckets);
 }
 
+Bars column_bars(std::span<const double> values, std::size_t columns) {
+  Bars bars;
+  const double width = static_cast<double>(values.size()) / static_cast<double>(columns);
+  for (std::size_t i = 0; i < columns; ++i) {
+    const std::size_t begin = i * values.size() / columns;
+    const std::size_t end = std::max(begin + 1, (i + 1) * values.size() / columns);
+    double low = std::numeric_limits<double>::infinity();
+    double high = -low;
+    for (std::size_t j = begin; j < std::min(end, values.size()); ++j) {
+      if (!std::isfinite(values[j])) continue;
+      low = std::min(low, values[j]);
+      high = std::max(high, values[j]);
+    }
+    if (!(low <= high)) continue;
+    const double middle = (static_cast<double>(i) + 0.5) * width;
+    bars.x.insert(bars.x.end(), {middle, middle, middle});
+    bars.y.insert(bars.y.end(), {low, high, std::numeric_limits<double>::quiet_NaN()});
+  }
+  return bars;
+}
+
 Quantised quantised(std::span<const double> values) {
   double low = std::numeric_limits<double>::infinity();
   double high = -low;

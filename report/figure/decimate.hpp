@@ -37,6 +37,15 @@ std::vector<double> thinned(std::span<const double> values, const Buckets& bucke
 std::vector<double> thinned_where(std::span<const double> values, std::span<const double> extremes,
                                   const Buckets& buckets);
 
+/// Vertical bars, one per pixel column, from the smallest to the largest value in it, so that all
+/// peaks are visible and a line joins no two of them. NaN lifts the pen after each bar.
+struct Bars {
+  std::vector<double> x;  ///< middle of the column, in samples
+  std::vector<double> y;
+};
+/// Returns the bars of a series. A column without finite values has none.
+Bars column_bars(std::span<const double> values, std::size_t columns);
+
 /// Values quantised to 16-bit steps above the minimum: little endian, base64; 65535 is NaN.
 struct Quantised {
   double low = 0.0;

@@ -6,6 +6,8 @@
 #include <cmath>
 #include <limits>
 
+#include "common/significant.hpp"
+
 namespace rigcal::report {
 namespace {
 
@@ -50,9 +52,11 @@ void leave_room(Axis& axis, double share) {
   axis.high += room;
 }
 
+constexpr int kTickDigits = 6;
+
 std::string tick_text(double value, double step) {
   if (std::abs(value) < 1e-9 * step) return "0";
-  return fmt::format("{:.6g}", value);
+  return significant(value, kTickDigits);
 }
 
 struct Tick {
@@ -65,7 +69,7 @@ std::vector<Tick> ticks_of(const Axis& axis, int count) {
   if (axis.whole) {
     const double step = std::max(1.0, std::ceil((axis.high - axis.low) / std::max(1, count)));
     for (double k = std::ceil(axis.low); k <= axis.high; k += step)
-      ticks.push_back({k, fmt::format("{:g}", k)});
+      ticks.push_back({k, significant(k, kTickDigits)});
     return ticks;
   }
   if (axis.logarithmic) {
@@ -79,7 +83,7 @@ std::vector<Tick> ticks_of(const Axis& axis, int count) {
           const double value = factor * std::pow(10.0, d);
           if (factor > 1.0 && !close) break;
           if (std::log10(value) >= axis.low && std::log10(value) <= axis.high)
-            ticks.push_back({value, fmt::format("{:g}", value)});
+            ticks.push_back({value, significant(value, kTickDigits)});
         }
       }
       if (ticks.size() > 1) return ticks;
@@ -88,7 +92,7 @@ std::vector<Tick> ticks_of(const Axis& axis, int count) {
     ticks.clear();
     for (const double value :
          round_ticks(std::pow(10.0, axis.low), std::pow(10.0, axis.high), count))
-      ticks.push_back({value, fmt::format("{:.6g}", value)});
+      ticks.push_back({value, significant(value, kTickDigits)});
     return ticks;
   }
   const std::vector<double> values = round_ticks(axis.low, axis.high, count);

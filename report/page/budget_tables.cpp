@@ -79,6 +79,7 @@ void add_lines(const BudgetOf& of, std::vector<doc::Row>& rows) {
 
 doc::Table budget_table(const std::string& what, const std::vector<BudgetOf>& budgets) {
   doc::Table table{"Uncertainty budget"};
+  table.style = "budget";
   table.caption = {"Uncertainty budget: standard uncertainties u; their squares add up"};
   const FurtherColumns further = further_columns(budgets);
   table.columns = {{what},

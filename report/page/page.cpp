@@ -167,6 +167,13 @@ void add_first_page(const Parts& parts, bool synthetic, const std::string& sha25
 void shorten(doc::Blocks& blocks) {
   constexpr std::size_t kMostPictures = 4;
   std::size_t pictures = 0;
+  for (doc::Block& block : blocks) {
+    if (auto* table = std::get_if<doc::Table>(&block)) {
+      for (doc::Row& row : table->rows)
+        for (doc::Cell& cell : row.cells)
+          for (doc::Tile& tile : cell.tiles) tile.picture.reset();
+    }
+  }
   std::erase_if(blocks, [&](const doc::Block& block) {
     if (const auto* gallery = std::get_if<doc::Gallery>(&block)) {
       pictures += gallery->figures.size();
@@ -177,8 +184,7 @@ void shorten(doc::Blocks& blocks) {
            std::holds_alternative<doc::Article>(block) ||
            std::holds_alternative<doc::Rendered>(block) ||
            std::holds_alternative<doc::LivePlot>(block) ||
-           std::holds_alternative<doc::LiveSeries>(block) ||
-           std::holds_alternative<doc::Tiles>(block);
+           std::holds_alternative<doc::LiveSeries>(block);
   });
 }
 

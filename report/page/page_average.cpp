@@ -101,8 +101,19 @@ std::vector<Figure> average_figures(const std::string& condition, const Table& s
         "sd of " + words, largest(*sd), si);
     spread.height = 130.0;
     Trace trace = empty_trace(Trace::Kind::line, "residual");
-    trace.x = thinned_times(*time_s, *sd, thin);
-    trace.y = thinned(*sd, thin);
+    // The sd varies from sample to sample: a line from one extreme to the next would show waves
+    // that no record has.
+    if (thin.size > 1) {
+      Bars bars = column_bars(*sd, kAveragePoints);
+      const double step_s =
+          (time_s->back() - time_s->front()) / static_cast<double>(sd->size() - 1);
+      for (double& x : bars.x) x = time_s->front() + (x - 0.5) * step_s;
+      trace.x = std::move(bars.x);
+      trace.y = std::move(bars.y);
+    } else {
+      trace.x = *time_s;
+      trace.y = *sd;
+    }
     for (double& value : trace.y) value /= si;
     spread.traces.push_back(std::move(trace));
     figures.push_back({fmt::format("{}_{}_sd", condition, about.key), std::move(spread)});

@@ -161,8 +161,9 @@ bool differ(const StoredSeries& series, const TrendAxis& axis) {
 std::string trend_reading(const StoredSeries& series, const TrendAxis& axis) {
   const calib::EstimateTrend& trend = axis.trend_of(series);
   if (!trend.slope || !trend.ci95 || !trend.p_value) return trend.reason.value_or("");
-  return fmt::format("{}: {:+.3g} {} ({:.3g} to {:.3g}), {}: {}.", series.of, *trend.slope,
-                     axis.per_unit, trend.ci95->low, trend.ci95->high, p_value_text(*trend.p_value),
+  return fmt::format("{}: {}{} {} ({} to {}), {}: {}.", series.of, *trend.slope < 0.0 ? "" : "+",
+                     significant(*trend.slope, 3), axis.per_unit, significant(trend.ci95->low, 3),
+                     significant(trend.ci95->high, 3), p_value_text(*trend.p_value),
                      trend.significant == true ? "significant trend" : "no significant trend");
 }
 

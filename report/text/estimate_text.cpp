@@ -5,8 +5,9 @@
 #include <algorithm>
 #include <charconv>
 #include <cmath>
+#include <utility>
 
-#include "report/text/readable.hpp"
+#include "common/significant.hpp"
 
 namespace rigcal::report {
 namespace {
@@ -14,20 +15,15 @@ namespace {
 constexpr int kLeastDigits = 2;
 constexpr int kMostDigits = 7;
 constexpr int kUnknownDigits = 6;
-/// Numbers whose leading digit is between these powers of ten are written without an exponent.
-constexpr int kWrittenFrom = -3;
+/// Numbers whose leading digit is between these powers of ten are written without a power of ten.
+constexpr int kWrittenFrom = -4;
 constexpr int kWrittenTo = 5;
 
 struct Rounded {
   std::string text;
-  double step = 0.0;  ///< place value of the last digit
+  double value = 0.0;  ///< what the text says
+  double step = 0.0;   ///< place value of the last digit
 };
-
-double number_of(const std::string& text) {
-  double value = 0.0;
-  std::from_chars(text.data(), text.data() + text.size(), value);
-  return value;
-}
 
 /// Returns the power of ten of the leading digit, corrected for a 0.1 that is stored as
 /// 0.0999999999.
@@ -39,11 +35,14 @@ int power_of(double value) {
 /// Rounds a value that is not zero to a number of significant digits.
 Rounded rounded(double value, int digits) {
   std::string text = fmt::format("{:.{}e}", value, digits - 1);
+  double read = 0.0;
+  std::from_chars(text.data(), text.data() + text.size(), read);
   const int power = std::stoi(text.substr(text.find('e') + 1));
-  if (power < kWrittenFrom || power > kWrittenTo) return {text, std::pow(10.0, power + 1 - digits)};
   const int decimals = digits - 1 - power;
-  if (decimals >= 0) return {fmt::format("{:.{}f}", value, decimals), std::pow(10.0, -decimals)};
-  return {fmt::format("{:.0f}", number_of(text)), std::pow(10.0, -decimals)};
+  const double step = std::pow(10.0, -decimals);
+  if (power < kWrittenFrom || power > kWrittenTo)
+    return {with_power_of_ten(std::move(text)), read, step};
+  return {fmt::format("{:.{}f}", read, std::max(decimals, 0)), read, step};
 }
 
 bool holds(const Range& allowed, double value) {
@@ -65,16 +64,27 @@ std::string matched(double value, double uncertainty, const Range& allowed) {
   Rounded found;
   for (int digits = digits_of(value, uncertainty); digits <= kMostDigits; ++digits) {
     found = rounded(value, digits);
-    if (holds(allowed, number_of(found.text))) return found.text;
+    if (holds(allowed, found.value)) return found.text;
   }
   // No number of digits keeps the rounded value inside the range. Uses the next number inside.
   for (const double side : {-0.5, 0.5}) {
     const double inward = value + side * found.step;
     if (inward == 0.0) continue;
     const Rounded next = rounded(inward, kMostDigits);
-    if (holds(allowed, number_of(next.text))) return next.text;
+    if (holds(allowed, next.value)) return next.text;
   }
-  return fmt::format("{}", value);
+  return with_power_of_ten(fmt::format("{}", value));
+}
+
+std::string uncertainty_text(double half_width, double value) {
+  std::string own = matched(half_width, half_width);
+  if (!(half_width > 0.0) || !std::isfinite(half_width) || value == 0.0 || !std::isfinite(value))
+    return own;
+  const int power = power_of(value);
+  const int decimals = kErrorDigits - 1 - power_of(half_width);
+  const bool has_decimals_of_value = power >= kWrittenFrom && power <= kWrittenTo &&
+                                     decimals >= 0 && power + decimals < kMostDigits;
+  return has_decimals_of_value ? fixed(half_width, decimals) : own;
 }
 
 EstimateText estimate_text(double value, const std::optional<Range>& ci95, const Range& bounds) {

@@ -412,6 +412,31 @@ TEST_CASE("export: every term that an FMU can have is in it", "[apps]") {
     folder.write("campaign.toml", kArm);
     require_both(folder, "pilot_pressure", {{"sine", sine(2e6)}, {"square", square(2e6)}});
   }
+  SECTION("a supply that gives way, with its pump, accumulator and relief valves") {
+    Edits edits = kGeneratedRuns;
+    edits.push_back({"mass = \"60 kg\"",
+                     "mass = \"60 kg\"\nsupply_resistance = \"1e10 Pa "
+                     "s/m3\"\nsupply_capacity = \"1e-13 m3/Pa\"\npump_flow = \"5 "
+                     "L/min\"\naccumulator_volume = \"2 mL\"\naccumulator_precharge = \"30 "
+                     "bar\"\naccumulator_exponent = 1.3\nrelief_pressure = \"35 "
+                     "bar\"\nrelief_conductance = \"1e-11 m3/(s Pa)\""});
+    folder.write("campaign.toml", edited(kCampaign, edits));
+    require_both(folder, "reference", {{"sine", sine(0.005)}, {"square", square(0.004)}});
+  }
+  SECTION("an arm whose cylinder rubs, on a lubricant film") {
+    // Without the second flow of the pump, the solver has room for the film.
+    folder.write("campaign.toml",
+                 edited(kArm, {{"pump_first_rate = \"10 (L/min)/s\"\npump_second_flow = \"80 "
+                                "L/min\"\npump_delay = \"0.15 s\"\npump_rise = \"50 ms\"\n",
+                                ""},
+                               {"joint_friction = ",
+                                "coulomb_friction = \"1 kN\"\nstribeck_friction = \"600 "
+                                "N\"\nseal_friction = \"1 cm2\"\nbristle_stiffness = \"10 "
+                                "N/um\"\nbristle_damping = \"10 N s/mm\"\nfilm_velocity = \"50 "
+                                "mm/s\"\nfilm_growth_time = \"50 ms\"\nfilm_decay_time = \"0.2 "
+                                "s\"\nfilm_dwell_time = \"5 s\"\njoint_friction = "}}));
+    require_both(folder, "pilot_pressure", {{"sine", sine(2e6)}, {"square", square(2e6)}});
+  }
   SECTION("a loop on force, against a load that varies with the travel") {
     Edits edits = kGeneratedRuns;
     edits.push_back({"mass = \"60 kg\"",

@@ -55,3 +55,26 @@ TEST_CASE("kMetrics: a scaled channel scales the metrics in its unit and no othe
           metric.compute(measured, simulated) * (metric.unit == "channel" ? 4.0 : 1.0));
   }
 }
+TEST_CASE("score_text: digits that show the distance from the best value and the side of a limit",
+          "[metrics]") {
+  const MetricSpec& rho2 = *find_metric("rho2");
+  const MetricSpec& error = *find_metric("absolute_error_percent");
+  CHECK(score_text(rho2, 0.99987) == "0.99987");
+  CHECK(score_text(rho2, 0.778966) == "0.7790");
+  CHECK(score_text(rho2, 1.0) == "1.0000");
+  CHECK(score_text(rho2, 0.989996, 0.99) == "0.989996");
+  CHECK(score_text(rho2, 0.990004, 0.99) == "0.9900");
+  CHECK(score_text(error, 10.7863, 1.0) == "10.79");
+  CHECK(score_text(error, 1.00004, 1.0) == "1.00004");
+  CHECK(score_text(error, 0.99996, 1.0) == "1");  // at its limit it is kept, too
+  CHECK(find_metric("rho3") == nullptr);
+  for (const MetricSpec& metric : kMetrics) {
+    for (const double limit : {0.9, 0.99, 1.0}) {
+      for (const double off : {-1e-7, -3e-5, 2e-6, 4e-3}) {
+        const double read = std::stod(score_text(metric, limit + off, limit));
+        CAPTURE(metric.name, limit, off, read);
+        CHECK(keeps(metric, read, limit) == keeps(metric, limit + off, limit));
+      }
+    }
+  }
+}

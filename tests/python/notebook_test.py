@@ -11,12 +11,15 @@ import signal
 import subprocess
 import sys
 import threading
+import types
+from typing import Any
 
 import numpy as np
 import pytest
 
 import rigcal
 from conftest import command
+from rigcal import notebook
 
 
 @pytest.fixture(scope="module")
@@ -139,6 +142,17 @@ def test_frames(campaign: rigcal.Campaign, fit: rigcal.Fit, results: dict[str, r
     assert list(simulation.to_frame()["position_m"]) == list(simulation.position_m)
     record = next(iter(campaign.average().values()))
     assert list(record.to_frame()["position"]) == list(record.channels["position"].mean)
+
+
+def test_a_joint_is_drawn_by_its_angle() -> None:
+    matplotlib = pytest.importorskip("matplotlib")
+    matplotlib.use("agg")
+    joint: Any = types.SimpleNamespace(
+        condition="arm", time_s=[0.0, 1.0], signals={"position_m": [0.0, 0.1], "angle_rad": [0.0, 0.3]}
+    )
+    assert notebook._plot_simulation(joint, None).axes[0].get_ylabel() == "angle_rad"
+    joint.signals.pop("angle_rad")
+    assert notebook._plot_simulation(joint, None).axes[0].get_ylabel() == "position_m"
 
 
 def test_figures(campaign: rigcal.Campaign, fit: rigcal.Fit, results: dict[str, rigcal.Result]) -> None:

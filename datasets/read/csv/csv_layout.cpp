@@ -138,11 +138,58 @@ struct NamedLine {
   std::vector<CsvName> names;  ///< empty if the line has no names
 };
 
+/// Whether a line describes the columns and names none: "Rate: 250 Hz" for each.
+bool are_settings(const std::vector<CsvName>& names) {
+  return std::all_of(names.begin(), names.end(), [](const CsvName& name) {
+    return name.full.empty() || name.full.find(": ") != std::string::npos;
+  });
+}
+
 NamedLine names_above(std::span<const std::string> lines, std::size_t line, char separator,
                       std::size_t width) {
-  const std::size_t above = line_above(lines, line);
-  if (above == lines.size()) return {};
-  return {above, names_in(lines[above], separator, width)};
+  for (std::size_t above = line_above(lines, line); above < lines.size();
+       above = line_above(lines, above)) {
+    NamedLine found{above, names_in(lines[above], separator, width)};
+    if (found.names.empty() || !are_settings(found.names)) return found;
+  }
+  return {};
+}
+
+/// Finds the names where each value has a column of times before it and the lines above have pairs
+/// of a key and a value instead, as TwinCAT Scope writes them: "Name", "ActPos", "Name", "ActPres".
+std::optional<CsvLayout> layout_of_pairs(std::span<const std::string> lines, std::size_t data,
+                                         char separator, std::size_t width) {
+  if (width < 4 || width % 2 != 0) return std::nullopt;
+  std::optional<std::size_t> names_line;
+  std::vector<std::string_view> units;
+  std::size_t units_line = 0;
+  for (std::size_t above = line_above(lines, data); above < lines.size();
+       above = line_above(lines, above)) {
+    const auto fields = fields_of(lines[above], separator);
+    bool alternate = fields.size() + 1 >= width && !fields.front().empty();
+    for (std::size_t i = 2; alternate && i < width; i += 2) alternate = fields[i] == fields.front();
+    if (!alternate) break;
+    if (fields.front() == "Name") names_line = above;
+    if (fields.front() != "Unit") continue;
+    units = fields;
+    units_line = above;
+  }
+  if (!names_line) return std::nullopt;
+  const auto names = header_names(lines[*names_line], separator);
+  CsvLayout layout{*names_line, data, separator, {}, false, {}, units_line};
+  // Ticks of 100 ns since 1601, or milliseconds since the beginning.
+  constexpr double kTicksOfACentury = 3e16;
+  const double first =
+      number_in_field(fields_of(lines[data], separator).front(), separator).value_or(0);
+  const std::string_view time_unit = first > kTicksOfACentury ? "100 ns" : "ms";
+  for (std::size_t i = 1; i < width; i += 2) {
+    layout.names.push_back({"Time", "Time"});
+    layout.names.push_back(i < names.size() ? names[i] : CsvName());
+    layout.units.emplace_back(time_unit);
+    layout.units.push_back(i < units.size() ? unit_of_text(units[i]) : std::string());
+  }
+  if (units.empty()) layout.units_line = *names_line;
+  return layout;
 }
 
 /// Finds names and units above the first row of numbers. There may be a line of descriptions, such
@@ -212,6 +259,7 @@ std::optional<CsvLayout> find_layout(std::span<const std::string> lines, bool is
     if (separator != 0 && separator != each) continue;
     const auto rows = first_rows(lines, is_whole, each);
     if (!rows) continue;
+    if (auto layout = layout_of_pairs(lines, rows->line, each, rows->width)) return layout;
     if (auto layout = layout_above(lines, rows->line, each, rows->width)) return layout;
   }
   return std::nullopt;

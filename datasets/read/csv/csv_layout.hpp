@@ -26,7 +26,9 @@ struct CsvLayout {
 /// text (loggers, LabVIEW's .lvm, dSPACE), be separated by spaces, have a row of units below them,
 /// or be in a comment directly above the numbers. The numbers begin at the first of two lines (or
 /// at the last line) that have the same number of fields, all of them numbers. The names are
-/// directly above them, one per field, and none of them is a number.
+/// directly above them, one per field, and none of them is a number. Lines of settings ("Rate: 250
+/// Hz" in each field) may be between both. TwinCAT Scope has pairs of time and value, with pairs of
+/// a key and a value above them; all their times are then named "Time".
 ///
 /// @param lines  first lines of the text, without line ends
 /// @param is_whole  whether `lines` is the whole text

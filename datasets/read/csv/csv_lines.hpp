@@ -7,12 +7,13 @@
 namespace rigcal::datasets {
 
 /// Reads the lines of a text file one at a time, using the LineReader of fast-cpp-csv-parser. Its
-/// buffer has at most 48 MB, whatever the size of the file.
+/// buffer has at most 48 MB, whatever the size of the file. UTF-16, as Excel writes "Unicode text",
+/// is converted to UTF-8.
 class CsvLines {
  public:
   /// @param max_bytes  larger files are refused, immediately if the size is known in advance
-  /// @throws InputError  if there is no such file, or if it is a folder, unreadable, binary, UTF-16
-  ///                     or too large
+  /// @throws InputError  if there is no such file, or if it is a folder, unreadable, binary or
+  ///                     too large
   CsvLines(const std::filesystem::path& path, std::size_t max_bytes);
   ~CsvLines();
   CsvLines(const CsvLines&) = delete;

@@ -41,7 +41,19 @@ struct Header {
   bool last_may_lack = false;         ///< the last column is a comment that rows may omit
   bool is_unnamed = false;            ///< no line names the columns
   std::optional<RegularTime> time{};  ///< a .lvm without a column of times has it
+  std::string text{};                 ///< the line of names
+  std::string units_text{};           ///< the row of units directly below it, if there is one
+  /// Whether each value has a column of times before it, all of one name.
+  bool in_pairs = false;
 };
+
+/// Whether columns alternate between times, which share a name, and values.
+bool are_pairs(const std::vector<CsvName>& names) {
+  if (names.size() < 4 || names.size() % 2 != 0 || names.front().full.empty()) return false;
+  for (std::size_t i = 0; i < names.size(); ++i)
+    if ((names[i].full == names.front().full) != (i % 2 == 0)) return false;
+  return true;
+}
 
 /// Lines of a file. The first lines can be inspected before they are read.
 class HeadedLines {
@@ -130,14 +142,6 @@ bool lacks_names(const std::vector<std::string>& lines, char separator) {
   return names == 1 || is_row_of_numbers(*first, by, names);
 }
 
-/// Name by which the times of a .lvm without a column of times are requested.
-constexpr std::string_view kLvmTime = "X_Value";
-
-bool has_name(const Header& header, std::string_view wanted) {
-  return std::any_of(header.names.begin(), header.names.end(),
-                     [wanted](const CsvName& name) { return name.full == wanted; });
-}
-
 /// Finds a header below lines of text, with spaces as separators, or above a row of units; nullopt
 /// for other files.
 std::optional<Header> unusual_header(HeadedLines& lines, const std::string& file, char separator) {
@@ -150,9 +154,13 @@ std::optional<Header> unusual_header(HeadedLines& lines, const std::string& file
       0};
   header.last_may_lack = layout->last_may_lack;
   if (!header.units.empty()) header.units_line = static_cast<long>(layout->units_line) + 1;
+  header.text = head[layout->header];
+  if (!layout->units.empty() && layout->units_line == layout->header + 1)
+    header.units_text = head[layout->units_line];
   const auto lvm =
-      lvm_header(std::span(head).first(layout->header), layout->separator, layout->names.size());
-  if (lvm && !has_name(header, kLvmTime)) header.time = lvm->time;
+      lvm_header(std::span(head).first(layout->header), layout->separator, layout->names);
+  if (lvm) header.time = lvm->time;
+  if (lvm && lvm->time && lvm->first_is_empty) header.names.front() = {};
   if (lvm && header.units.empty() && !lvm->units.empty()) {
     header.units = lvm->units;
     header.units_line = static_cast<long>(lvm->units_line) + 1;
@@ -178,7 +186,10 @@ Header read_header(HeadedLines& lines, const std::string& file, char separator) 
     throw InputError(
         {file},
         fmt::format("'{}' cannot separate columns; expected ',', ';', tab or a blank", separator));
-  if (auto header = unusual_header(lines, file, separator)) return *header;
+  if (auto header = unusual_header(lines, file, separator)) {
+    header->in_pairs = are_pairs(header->names);
+    return *header;
+  }
   if (lacks_names(lines.look_ahead(10), separator))
     if (auto header = unnamed_header(lines, file, separator)) return *header;
   const char* text = lines.next();
@@ -212,6 +223,8 @@ Header read_header(HeadedLines& lines, const std::string& file, char separator) 
     fail(
         "contains numbers; expected the header with the names of the columns, without '#' in "
         "front");
+  header.text = text;
+  header.in_pairs = are_pairs(header.names);
   return header;
 }
 
@@ -228,7 +241,8 @@ ColumnLabel label_of(const Header& header, std::size_t field) {
 std::size_t find_column(const Header& header, const std::string& wanted) {
   const Location where{header.file, header.line, header.is_unnamed ? 1 : 0};
   if (const auto found = find_column(header.names, wanted)) {
-    if (found->second)
+    const bool is_time_of_pairs = header.in_pairs && found->index == 0;
+    if (found->second && !is_time_of_pairs)
       throw InputError(where, fmt::format("columns {} and {} are both named '{}'; expected one",
                                           found->index + 1, *found->second + 1, wanted));
     return found->index;
@@ -280,6 +294,8 @@ class RowReader {
     for (std::size_t i = 0; i < request.columns.size(); ++i)
       wanted_.push_back(
           {find_column(header, request.columns[i]), i, request.columns[i] == request.time_column});
+    has_pairs_ = header.in_pairs && std::any_of(wanted_.begin(), wanted_.end(),
+                                                [](const Wanted& w) { return w.is_time; });
     values_.resize(wanted_.size());
     std::sort(wanted_.begin(), wanted_.end(),
               [](const Wanted& a, const Wanted& b) { return a.field < b.field; });
@@ -289,15 +305,43 @@ class RowReader {
       table_.labels[wanted.target] = label_of(header, wanted.field);
   }
 
-  void read(std::string_view line, long line_number) {
+  /// Reads a row. Returns false for text that is no row: the names again, or a remark.
+  bool read(std::string_view line, long line_number) {
     if (rows_ == 0) first_line_ = line_number;
     if ((rows_ + 1) * wanted_.size() > kMostValues)
       throw InputError({header_.file, line_number},
                        fmt::format("more than {} numbers ({} rows of {} columns), the limit of one "
                                    "file; decimate the record, or split it into several files",
                                    kMostValues, rows_, wanted_.size()));
-    if (read_plain(line, line_number) || read_any(line, line_number)) ++rows_;
+    if (read_plain(line, line_number)) {
+      ++rows_;
+      return true;
+    }
+    if (is_text(line)) return false;
+    if (read_any(line, line_number)) ++rows_;
+    return true;
   }
+
+  /// Whether a line has a number in every wanted column.
+  bool is_row(std::string_view line) const {
+    std::size_t count = 0;
+    auto next = wanted_.begin();
+    CsvFields fields(line, header_.separator);
+    for (CsvField field; fields.next(field); ++count) {
+      // A .lvm has no text in the column of times that it leaves empty.
+      if (header_.time && count < header_.names.size() && header_.names[count].full.empty() &&
+          !field.text.empty())
+        return false;
+      for (; next != wanted_.end() && next->field == count; ++next)
+        if (!number_in_field(field.text, header_.separator) &&
+            !(next->is_time && time_stamp(field.text)))
+          return false;
+    }
+    return next == wanted_.end();
+  }
+
+  /// Says that the names occurred again in a line, and rows follow.
+  void note_header(long line_number) { repeated_header_ = line_number; }
 
   /// Reserves memory for all rows at once. Growing columns would temporarily need up to three times
   /// their memory, whereas unused capacity costs only addresses.
@@ -346,7 +390,7 @@ class RowReader {
   /// Reads a row as most loggers write it: wanted numbers are directly between separators, and no
   /// field begins with a quote. Returns false for any other row, whether right or wrong.
   bool read_plain(std::string_view line, long line_number) {
-    if (header_.separator == ' ' || clock_.has_begun()) return false;
+    if (header_.separator == ' ' || clock_.has_begun() || has_pairs_) return false;
     const char* at = line.data();
     const char* const end = at + line.size();
     std::size_t length = 0;  // length of the last wanted field
@@ -388,7 +432,14 @@ class RowReader {
     std::optional<CsvField> bad;
     std::size_t bad_index = 0;
     CsvFields fields(line, header_.separator);
-    for (CsvField field; fields.next(field); ++count)
+    std::string_view first_time;
+    CsvField own_time;
+    for (CsvField field; fields.next(field); ++count) {
+      if (count == 0) first_time = field.text;
+      if (count % 2 == 0) own_time = field;
+      const bool has_other_time = has_pairs_ && next != wanted_.end() && next->field == count &&
+                                  own_time.text != first_time && count % 2 == 1;
+      if (has_other_time) fail_on_pair(line, line_number, own_time, count, first_time);
       for (; next != wanted_.end() && next->field == count; ++next) {
         auto value = number_in_field(field.text, header_.separator);
         const bool is_stamp = next->is_time && !value;
@@ -406,6 +457,7 @@ class RowReader {
           fail_on_time(line, line_number, field, *value, column.back());
         column.push_back(*value);
       }
+    }
     // A comment that a row omits is not a number, so a request for that column is an error.
     const bool lacks_last =
         header_.last_may_lack && count + 1 == header_.names.size() && next == wanted_.end();
@@ -449,10 +501,26 @@ class RowReader {
 
   [[noreturn]] void fail_on_time(std::string_view line, long line_number, const CsvField& field,
                                  double now, double before) const {
+    if (repeated_header_ != 0)
+      throw InputError({header_.file, repeated_header_, 1},
+                       fmt::format("the header occurs again, and time '{}' does not go on: {} "
+                                   "comes after {}. A second recording begins here; expected one "
+                                   "in each file",
+                                   request_.time_column, now, before));
     throw error(line, line_number, field.begin,
                 fmt::format("time '{}' does not increase: {} comes after {}; expected a larger "
                             "value in each row",
                             request_.time_column, now, before));
+  }
+
+  [[noreturn]] void fail_on_pair(std::string_view line, long line_number, const CsvField& own,
+                                 std::size_t index, std::string_view first) const {
+    throw error(line, line_number, own.begin,
+                fmt::format("the time of '{}' is '{}', that of '{}' is '{}'; expected the same "
+                            "times in each pair of columns: export the signals at one sample time, "
+                            "or those of each sample time to a file of their own",
+                            shown(header_.names[index].full), shown(own.text),
+                            shown(header_.names[1].full), shown(first)));
   }
 
   [[noreturn]] void fail_on_count(std::string_view line, long line_number,
@@ -488,9 +556,9 @@ class RowReader {
                               shown(field.text), shown(name)));
     if (header_name(field.text).full == name)
       throw error(line, line_number, field.begin,
-                  fmt::format("the header occurs again ('{}'): a second recording begins here; "
-                              "expected one in each file",
-                              shown(name)));
+                  fmt::format("the header occurs again ('{}') in other words than in line {}: a "
+                              "second recording begins here; expected one in each file",
+                              shown(name), header_.line));
     if (field.text.empty())
       throw error(line, line_number, field.begin,
                   fmt::format("column '{}' is empty; expected a number", shown(name)));
@@ -524,6 +592,14 @@ class RowReader {
     last_line_ = line_number;
   }
 
+  bool is_text(std::string_view line) const {
+    if (rows_ == 0 || header_.is_unnamed || is_comment(line)) return false;
+    if (line == header_.text) return true;
+    const auto fields =
+        static_cast<std::size_t>(std::count(line.begin(), line.end(), header_.separator) + 1);
+    return header_.separator != ' ' && fields < header_.names.size() && is_text_only(line);
+  }
+
   bool is_text_only(std::string_view line) const {
     bool any = false;
     CsvFields fields(line, header_.separator);
@@ -539,6 +615,8 @@ class RowReader {
   std::vector<Wanted> wanted_;
   std::vector<double> values_;  ///< values of the row being read, in the order of wanted_
   RecordTable table_;
+  long repeated_header_ = 0;  ///< line of the last header but the first; 0: none
+  bool has_pairs_ = false;    ///< the times of all pairs must agree
   std::size_t rows_ = 0;
   long first_line_ = 0;  ///< line of the first row
   StampClock clock_;
@@ -558,7 +636,8 @@ class RowReader {
 RecordRequest without_lvm_time(RecordRequest request, const Header& header) {
   std::erase(request.columns, kLvmTime);
   if (request.time_column == kLvmTime) request.time_column.clear();
-  if (request.columns.empty()) request.columns.push_back(header.names.front().full);
+  const std::size_t first = header.names.front().full.empty() ? 1 : 0;
+  if (request.columns.empty()) request.columns.push_back(header.names.at(first).full);
   return request;
 }
 
@@ -591,6 +670,76 @@ void insert_lvm_time(const RecordRequest& request, const Header& header, RecordT
   table.labels = std::move(labels);
 }
 
+/// Lines between rows: empty ones, text, and the names of the columns again. Some programs repeat
+/// the names on each page or above each block; others write a summary behind the data.
+class Interruption {
+ public:
+  explicit Interruption(const Header& header) : header_(header) {}
+
+  bool is_open() const { return first_line_ != 0; }
+
+  void add(std::string_view line, long number) {
+    if (first_line_ == 0) first_line_ = number;
+    const bool below_names = names_line_ != 0 && number == names_line_ + 1;
+    if (below_names && !header_.units_text.empty() && line != header_.units_text)
+      throw InputError({header_.file, number, 1},
+                       fmt::format("the header occurs again, but the row below it is not that of "
+                                   "line {}; expected the same units in the whole file",
+                                   header_.units_line));
+    if (is_blank(line)) return;
+    if (text_line_ == 0) {
+      text_line_ = number;
+      text_ = line;
+    }
+    if (!header_.text.empty() && line == header_.text) names_line_ = number;
+  }
+
+  /// Ends the lines at a row, which goes on with the recording if the names were repeated.
+  /// @return  the line of the names
+  /// @throws InputError  if they were not
+  long end_at(long row) {
+    if (text_line_ == 0)
+      throw InputError({header_.file, first_line_, 1},
+                       fmt::format("an empty line inside the data, which continue in line {}; "
+                                   "expected a row of {} columns",
+                                   row, header_.names.size()));
+    if (names_line_ == 0 || header_.time)
+      throw InputError({header_.file, text_line_, 1},
+                       fmt::format("'{}' inside the data, which continue in line {}; expected rows "
+                                   "of {} columns. Save each block of data to a file of its own",
+                                   shown(text_), row, header_.names.size()));
+    const long names = names_line_;
+    if (repeats_++ == 0) first_repeat_ = names;
+    first_line_ = text_line_ = names_line_ = 0;
+    return names;
+  }
+
+  /// Says what was left out between the rows and behind them; empty if nothing was.
+  std::string warning() const {
+    std::string text;
+    if (repeats_ > 0)
+      text = fmt::format(
+          "{}:{}: the header occurs again{}; its times go on, so that all rows are "
+          "one recording",
+          header_.file, first_repeat_,
+          repeats_ > 1 ? fmt::format(", {} times in all", repeats_) : "");
+    if (text_line_ == 0) return text;
+    return text + fmt::format(
+                      "{}{}:{}: not read: '{}' and all lines behind it, which follow the "
+                      "last row",
+                      text.empty() ? "" : "; ", header_.file, text_line_, shown(text_));
+  }
+
+ private:
+  const Header& header_;
+  long first_line_ = 0;  ///< 0: the last line was a row
+  long text_line_ = 0;   ///< first line that is not empty
+  std::string text_;
+  long names_line_ = 0;
+  long repeats_ = 0;
+  long first_repeat_ = 0;
+};
+
 /// Returns an upper bound on the number of rows in a file: a field takes at least two bytes,
 /// including its separator.
 std::size_t most_rows(const std::filesystem::path& path, const Header& header) {
@@ -610,19 +759,15 @@ RecordTable load_csv_record(const std::filesystem::path& path, const RecordReque
   const RecordRequest in_rows = header.time ? without_lvm_time(request, header) : request;
   RowReader reader(header, in_rows);
   reader.reserve(most_rows(path, header));
-  long empty_line = 0;
+  Interruption between(header);
   while (const char* text = lines.next()) {
     const std::string_view line = text;
-    if (is_blank(line)) {
-      if (empty_line == 0) empty_line = lines.number();
+    if (is_blank(line) || (between.is_open() && !reader.is_row(line))) {
+      between.add(line, lines.number());
       continue;
     }
-    if (empty_line != 0)
-      throw InputError({header.file, empty_line, 1},
-                       fmt::format("an empty line inside the data, which continue in line {}; "
-                                   "expected a row of {} columns",
-                                   lines.number(), header.names.size()));
-    reader.read(line, lines.number());
+    if (between.is_open()) reader.note_header(between.end_at(lines.number()));
+    if (!reader.read(line, lines.number())) between.add(line, lines.number());
   }
   if (reader.rows() == 0)
     throw InputError(
@@ -630,9 +775,11 @@ RecordTable load_csv_record(const std::filesystem::path& path, const RecordReque
         (reader.left_out() > 0 ? "no row has a number in every column: " + reader.first_left_out()
                                : std::string("no rows after the header")) +
             "; expected at least one row of numbers");
-  if (file.ends_without_newline()) reader.judge_end();
+  if (file.ends_without_newline() && !between.is_open()) reader.judge_end();
   reader.judge_commas();
   RecordTable table = reader.take();
+  if (const std::string left_out = between.warning(); !left_out.empty())
+    table.warning += (table.warning.empty() ? "" : "; ") + left_out;
   if (header.time) insert_lvm_time(request, header, table);
   return table;
 }
@@ -643,9 +790,13 @@ std::vector<RecordColumn> csv_record_columns(const std::filesystem::path& path) 
   const Header header = read_header(lines, path.string(), 0);
   std::vector<RecordColumn> columns;
   if (header.time) columns.push_back({std::string(kLvmTime), "s", true});
-  for (std::size_t i = 0; i < header.names.size(); ++i)
+  for (std::size_t i = 0; i < header.names.size(); ++i) {
+    const bool is_time = header.in_pairs && i % 2 == 0;
+    if (header.time && header.names[i].full.empty()) continue;  // the X_Value without numbers
+    if (is_time && i > 0) continue;  // load_csv_record() compares it with the first
     columns.push_back(
-        {header.names[i].full, header.units.empty() ? std::string() : header.units[i]});
+        {header.names[i].full, header.units.empty() ? std::string() : header.units[i], is_time});
+  }
   return columns;
 }
 

@@ -18,7 +18,10 @@ std::vector<RecordColumn> csv_record_columns(const std::filesystem::path& path);
 /// ("x [mm]", "x (mm)") and is not part of it. CRLF, a byte-order mark and a missing final newline
 /// are accepted, as is a decimal comma if the separator is ';' or tab, or if the number is between
 /// double quotes and not every such comma may be between thousands. Anything else in a wanted
-/// column that is not a finite number is an error. Other errors are a wrong number of columns, an
+/// column that is not a finite number is an error. Where each value has a column of times before it
+/// and all of these have one name, the first is the time, and those of the wanted columns must be
+/// the same. The header may occur again where the times go on, and text may follow the last row:
+/// a warning says so. Other errors are a wrong number of columns, an
 /// empty field, a time that does not increase, and a binary file. Columns that are not wanted are
 /// counted but not converted. A requested name may include its unit, and must do so if only the
 /// unit distinguishes two columns. At most 12 million numbers are read (96 MB), from at most 4 GiB.

@@ -1,9 +1,7 @@
 #include "datasets/read/csv/lvm_header.hpp"
 
 #include <algorithm>
-#include <string_view>
 
-#include "datasets/read/csv/csv_text.hpp"
 #include "datasets/read/unit_in_name.hpp"
 
 namespace rigcal::datasets {
@@ -43,7 +41,7 @@ std::optional<double> shared_number(const std::optional<LvmLine>& line, char sep
 }  // namespace
 
 std::optional<LvmHeader> lvm_header(std::span<const std::string> lines, char separator,
-                                    std::size_t names) {
+                                    std::span<const CsvName> names) {
   if (lines.empty() || !lines.front().starts_with("LabVIEW Measurement")) return std::nullopt;
   const auto is = [&](std::string_view key, std::string_view value) {
     const auto line = lvm_line(lines, separator, key);
@@ -53,14 +51,15 @@ std::optional<LvmHeader> lvm_header(std::span<const std::string> lines, char sep
   const bool lacks_times = is("X_Columns", "No");
   LvmHeader header;
   if (!has_times && !lacks_times) return header;
+  header.first_is_empty = lacks_times && !names.empty() && names.front().full == kLvmTime;
   if (const auto labels = lvm_line(lines, separator, "Y_Unit_Label")) {
-    // If there is a column of times, the first label belongs to it.
-    std::vector<std::string> units(names);
+    // A column of times has the first label, even if it is empty.
+    std::vector<std::string> units(names.size());
     for (std::size_t i = 1; i < labels->fields.size(); ++i) {
-      const std::size_t column = lacks_times ? i - 1 : i;
-      if (column < names) units[column] = unit_of_text(labels->fields[i]);
+      const std::size_t column = lacks_times && !header.first_is_empty ? i - 1 : i;
+      if (column < names.size()) units[column] = unit_of_text(labels->fields[i]);
     }
-    if (has_times && names > 0 && is("X_Dimension", "Time")) units.front() = "s";
+    if (has_times && !names.empty() && is("X_Dimension", "Time")) units.front() = "s";
     header.units = std::move(units);
     header.units_line = labels->line;
   }

@@ -192,10 +192,11 @@ doc::Verdict failed_verdict(const StoredFit& fit) {
                        [](const Judged& a, const Judged& b) { return a.how_bad() < b.how_bad(); });
   if (worst != signals.end() && worst->check != nullptr && worst->check->value &&
       worst->check->limit) {
-    sentence.emplace_back(fmt::format(
-        " The worst, {} of {}, has {} {} (limit {:.6g}).", spaced(worst->channel),
-        worst->condition->id, spaced(worst->check->metric),
-        doc::score(worst->check->metric, worst->check->value).text, *worst->check->limit));
+    sentence.emplace_back(
+        fmt::format(" The worst, {} of {}, has {} {} (limit {:.6g}).", spaced(worst->channel),
+                    worst->condition->id, spaced(worst->check->metric),
+                    doc::score(worst->check->metric, worst->check->value, worst->check->limit).text,
+                    *worst->check->limit));
   }
   return {{State::bad, "FAIL"}, std::move(sentence)};
 }
@@ -320,7 +321,7 @@ std::optional<double> coverage_factor(const calib::FittedParameter& p) {
 Line uncertainty_line(const calib::FittedParameter& p, const doc::Interval& interval,
                       const ReadableUnit& unit) {
   if (const auto half = expanded_uncertainty(p, interval))
-    return {"± ", doc::Quantity{half, matched(*half / unit.si, *half / unit.si)}};
+    return {"± ", doc::Quantity{half, uncertainty_text(*half / unit.si, p.value / unit.si)}};
   const doc::Estimate estimate =
       doc::estimate(p.value, interval, unit.si,
                     {p.lower.value_or(kAnywhere.low), p.upper.value_or(kAnywhere.high)});
@@ -391,7 +392,13 @@ void add_values(const StoredFit& fit, bool judged, doc::Blocks& blocks) {
   table.style = "values";
   const bool both = judged && std::any_of(found.begin(), found.end(),
                                           [](const auto* p) { return p->budget.has_value(); });
-  table.columns = {{"Quantity"}, {"Value", doc::Column::Kind::number}, {"U"}};
+  const bool has_skewed =
+      judged && std::any_of(found.begin(), found.end(), [](const auto* p) {
+        return doc::Interval(p->ci95).ends && !expanded_uncertainty(*p, p->ci95);
+      });
+  table.columns = {{"Quantity"},
+                   {"Value", doc::Column::Kind::number},
+                   {has_skewed ? "U, or 95 % interval" : "U"}};
   if (both) table.columns.push_back({"U if the model is exact"});
   table.columns.push_back({"Unit", doc::Column::Kind::unit});
   table.columns.push_back({"Determined?"});
@@ -436,25 +443,11 @@ Plot residual_strip(const Judged& signal, const std::vector<double>& residual, d
     band.upper = {allowed, allowed};
     plot.traces.push_back(std::move(band));
   }
-  // Each pixel column has one bar from the smallest to the largest residual, so that all peaks are
-  // visible and no spurious ones appear.
-  Trace bars = empty_trace(Trace::Kind::line, "residual");
-  for (std::size_t i = 0; i < kColumns; ++i) {
-    const std::size_t begin = i * residual.size() / kColumns;
-    const std::size_t end = std::max(begin + 1, (i + 1) * residual.size() / kColumns);
-    double low = HUGE_VAL;
-    double high = -HUGE_VAL;
-    for (std::size_t j = begin; j < std::min(end, residual.size()); ++j) {
-      if (!std::isfinite(residual[j])) continue;
-      low = std::min(low, residual[j]);
-      high = std::max(high, residual[j]);
-    }
-    if (!(low <= high)) continue;
-    const double middle = (static_cast<double>(i) + 0.5) * last / static_cast<double>(kColumns);
-    bars.x.insert(bars.x.end(), {middle, middle, middle});
-    bars.y.insert(bars.y.end(), {low, high, std::nan("")});
-  }
-  plot.traces.push_back(std::move(bars));
+  Trace trace = empty_trace(Trace::Kind::line, "residual");
+  Bars bars = column_bars(residual, kColumns);
+  trace.x = std::move(bars.x);
+  trace.y = std::move(bars.y);
+  plot.traces.push_back(std::move(trace));
   return plot;
 }
 
@@ -494,14 +487,14 @@ Range side_of_limit(double value, const std::optional<double>& limit) {
 void add_score(const Judged& signal, doc::Cell& cell) {
   const calib::LimitCheck& check = *signal.check;
   const bool is_error = check.metric == "absolute_error_percent";
-  doc::Quantity printed = doc::score(check.metric, check.value);
+  doc::Quantity printed = doc::score(check.metric, check.value, check.limit);
   Line limit;
   const calib::ChannelScore* score = signal.condition->find(signal.channel);
   if (const auto* known = score == nullptr ? nullptr : score->printed_uncertainty()) {
     for (const metrics::MetricSpec& metric : metrics::kMetrics) {
       const double half = known->*metric.value;
       if (metric.name != check.metric || !std::isfinite(half)) continue;
-      limit = {"U ", doc::in_unit(half, 1.0, kErrorDigits), ", "};
+      limit = {"U ", doc::Quantity{half, uncertainty_text(half, check.value.value_or(0.0))}, ", "};
       if (is_error && check.value)
         printed.text = matched(*check.value, half, side_of_limit(*check.value, check.limit));
     }

@@ -12,16 +12,22 @@
 
 namespace rigcal::report {
 
-/// Returns three key numbers, and a small picture of measurement and model for every condition.
-/// Returns std::nullopt if no condition was scored.
-std::optional<doc::Section> overview_section(const Calibration& stored);
+/// Returns the lowest rho2, the largest mean error and the least certain estimate.
+doc::Facts three_numbers(const StoredFit& fit);
+/// Returns a small picture of measurement and model over the last two periods, or over the whole
+/// record of a recorded drive. Returns std::nullopt if the condition was not simulated.
+std::optional<Plot> condition_picture(const Calibration& stored, std::size_t number,
+                                      const std::string& channel);
 /// Returns gain and phase of the rig: those of the conditions that are shown in full, together.
 /// Empty if they have fewer than two frequencies.
 std::vector<Figure> rig_response_figures(const Calibration& stored);
-/// Lists the scores for each channel by signal and leak level, followed by group means.
+/// Adds gain and phase of the rig. Adds nothing if there are fewer than two frequencies.
+void add_rig_response(const Calibration& stored, doc::Blocks& blocks);
+/// Lists three key numbers and the scores for each channel by signal and leak level, those of the
+/// motion with small pictures, followed by group means and the response of the rig.
 ///
 /// @param unfinished  whether the search did not converge
-doc::Section scores_section(const StoredFit& fit, bool unfinished);
+doc::Section scores_section(const Calibration& stored, bool unfinished);
 /// @param judged  whether a search converged, so that the estimates have grades
 doc::Section parameters_section(const std::vector<calib::FittedParameter>& parameters,
                                 const calib::Correlation& correlation, bool judged);

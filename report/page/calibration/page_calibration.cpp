@@ -61,8 +61,7 @@ Part fit_part(const Calibration& stored, const ResultFolder& folder) {
   part.verdict = fit_verdict(fit);
   part.front = certificate(stored);
   part.sections.push_back(assessment_section(fit));
-  if (auto overview = overview_section(stored)) part.sections.push_back(std::move(*overview));
-  part.sections.push_back(scores_section(fit, unfinished));
+  part.sections.push_back(scores_section(stored, unfinished));
   part.sections.push_back(parameters_section(
       fit.parameters, correlation_by_key(fit.correlation, fit.parameters), !unfinished));
   part.sections.push_back(conditions_section(stored, folder.threads, folder.curves));

@@ -15,7 +15,8 @@
 #include "report/page/page_parts.hpp"
 #include "report/text/readable.hpp"
 
-// The first screen after the verdict: three key numbers, and every condition as a small picture.
+// What the scores begin with: three key numbers, small pictures of the conditions, and the response
+// of the rig.
 
 namespace rigcal::report {
 namespace {
@@ -76,22 +77,22 @@ std::optional<Extreme> extreme(const std::vector<calib::ConditionResult>& condit
   return found;
 }
 
+std::optional<double> limit_of(const Extreme& worst, std::string_view metric) {
+  for (const calib::LimitCheck& check : worst.condition->limit_checks)
+    if (check.channel == worst.score->channel && check.metric == metric) return check.limit;
+  return std::nullopt;
+}
+
 /// Returns, for example, "load pressure of sine_2Hz, limit 0.9, U 0.00021".
 std::string whose(const Extreme& worst, const std::string& metric,
                   double metrics::Agreement::*value) {
-  const calib::ConditionResult& condition = *worst.condition;
-  std::string text = fmt::format("{} of {}", spaced(std::string(worst.score->key())), condition.id);
-  const auto check = std::find_if(
-      condition.limit_checks.begin(), condition.limit_checks.end(), [&](const auto& each) {
-        return each.channel == worst.score->channel && each.metric == metric;
-      });
-  if (check != condition.limit_checks.end() && check->limit)
-    text += fmt::format(", limit {:.6g}", *check->limit);
-  else
-    text += ", no limit";
+  std::string text =
+      fmt::format("{} of {}", spaced(std::string(worst.score->key())), worst.condition->id);
+  const std::optional<double> limit = limit_of(worst, metric);
+  text += limit ? fmt::format(", limit {:.6g}", *limit) : std::string(", no limit");
   const metrics::Agreement* uncertainty = worst.score->printed_uncertainty();
   if (uncertainty != nullptr && std::isfinite(uncertainty->*value))
-    text += fmt::format(", U {}", significant(uncertainty->*value, kErrorDigits));
+    text += ", U " + uncertainty_text(uncertainty->*value, worst.value);
   return text;
 }
 
@@ -106,6 +107,8 @@ const calib::FittedParameter* least_certain(const std::vector<calib::FittedParam
   return least;
 }
 
+}  // namespace
+
 doc::Facts three_numbers(const StoredFit& fit) {
   using metrics::Agreement;
   doc::Facts numbers{"Three numbers"};
@@ -114,10 +117,15 @@ doc::Facts three_numbers(const StoredFit& fit) {
     numbers.rows.push_back({name, {doc::Strong{text}, " ", doc::Soft{of}}});
   };
   if (const auto least = extreme(fit.conditions, &Agreement::rho2, std::less<>()))
-    add("Lowest rho2", agreement_text(least->value), whose(*least, "rho2", &Agreement::rho2));
+    add("Lowest rho2", doc::score("rho2", least->value, limit_of(*least, "rho2")).text,
+        whose(*least, "rho2", &Agreement::rho2));
   if (const auto largest =
           extreme(fit.conditions, &Agreement::absolute_error_percent, std::greater<>()))
-    add("Largest mean error", fmt::format("{} % of the range", significant(largest->value, 3)),
+    add("Largest mean error",
+        doc::score("absolute_error_percent", largest->value,
+                   limit_of(*largest, "absolute_error_percent"))
+                .text +
+            " % of the range",
         whose(*largest, "absolute_error_percent", &Agreement::absolute_error_percent));
   const calib::FittedParameter* least = least_certain(fit.parameters);
   // A search that was stopped before it converged has no valid errors.
@@ -132,6 +140,8 @@ doc::Facts three_numbers(const StoredFit& fit) {
       parameter_label(*least) + (bounded ? ", not different from zero" : ""));
   return numbers;
 }
+
+namespace {
 
 /// Returns the responses of the shown channel to the drive that most conditions have.
 std::vector<ResponseCurves> rig_responses(const Calibration& stored, const std::string& channel) {
@@ -175,45 +185,28 @@ std::vector<Figure> rig_response_figures(const Calibration& stored) {
           {"rig_" + channel + "_phase", phase_plot(name, all)}};
 }
 
-std::optional<doc::Section> overview_section(const Calibration& stored) {
-  const std::vector<calib::ConditionResult>& conditions = stored.result.conditions;
-  const std::string channel = shown_channel(conditions);
-  if (channel.empty()) return std::nullopt;
-  const std::vector<std::size_t> shown = shown_in_full(conditions);
-  doc::Section section{"overview", shown.size() < conditions.size()
-                                       ? fmt::format("The worst {} of {} conditions", shown.size(),
-                                                     conditions.size())
-                                       : "All conditions"};
-  section.blocks.emplace_back(three_numbers(stored.result));
-  section.blocks.emplace_back(doc::reading(
-      fmt::format("The {} over the last two periods (recorded drives: the whole record): measured "
-                  "(dark, wide) and simulated (orange). Select one to see its curves.",
-                  spaced(channel))));
-  doc::Tiles tiles;
-  for (const std::size_t i : shown) {
-    doc::Tile tile{doc::badge(conditions[i].verdict), {conditions[i].id}};
-    tile.to = "#" + anchor(conditions[i].id);
-    Plot plot = small_plot(conditions[i], *stored.series(i), channel);
-    if (plot.traces.empty())
-      tile.below = {{"not simulated"}};
-    else
-      tile.picture = std::move(plot);
-    tiles.tiles.push_back(std::move(tile));
-  }
-  section.blocks.emplace_back(std::move(tiles));
+std::optional<Plot> condition_picture(const Calibration& stored, std::size_t number,
+                                      const std::string& channel) {
+  const calib::ConditionResult& condition = stored.result.conditions[number];
+  Plot plot = small_plot(condition, *stored.series(number), channel);
+  if (plot.traces.empty()) return std::nullopt;
+  return plot;
+}
+
+void add_rig_response(const Calibration& stored, doc::Blocks& blocks) {
   doc::Gallery response;
   for (Figure& figure : rig_response_figures(stored))
     response.figures.push_back(figure_of(std::move(figure.plot)));
-  if (response.figures.empty()) return section;
+  if (response.figures.empty()) return;
   response.figures.front().caption = "How strongly does the rig respond at each frequency?";
   response.figures.back().caption = "How far does the response lag?";
   // Not on paper, where each condition has its own gain and phase.
   doc::Fold fold{"Gain and phase of the rig", {std::move(response)}, true, "screen"};
   fold.blocks.emplace_back(
-      doc::reading("All conditions above with the most frequent kind of drive; a line joins the "
-                   "points of one condition. Gain and phase depend on the amplitude."));
-  section.blocks.emplace_back(std::move(fold));
-  return section;
+      doc::reading("All conditions that are shown in full and have the most frequent kind of "
+                   "drive; a line joins the points of one condition. Gain and phase depend on the "
+                   "amplitude."));
+  blocks.emplace_back(std::move(fold));
 }
 
 }  // namespace rigcal::report

@@ -5,6 +5,7 @@
 #include <optional>
 #include <utility>
 
+#include "report/figure/time_plots.hpp"
 #include "report/page/calibration/fit_sections.hpp"
 #include "report/page/page_parts.hpp"
 #include "report/text/readable.hpp"
@@ -43,14 +44,20 @@ std::vector<Plot> test_plots(const metrics::ResidualCurves& curves,
     plots.push_back(
         correlation_plot(*curves.cross_correlation, "cross-correlation with input", false));
   }
-  Plot power = small_plot("periodogram", "frequency [Hz]",
-                          fmt::format("power density [{}^2/Hz]", channel_unit_name));
+  const ReadableUnit unit =
+      readable_unit(std::sqrt(largest(curves.periodogram.density)), channel_unit_name);
+  const std::string name =
+      unit.name.find(' ') == std::string::npos ? unit.name : "(" + unit.name + ")";
+  Plot power = small_plot(
+      "periodogram", "frequency [Hz]",
+      name.empty() ? "power density [1/Hz]" : fmt::format("power density [{}²/Hz]", name));
   power.log_x = true;
   power.log_y = true;
   Trace density;
   density.style = "residual";
   density.x = curves.periodogram.frequency_hz;
   density.y = curves.periodogram.density;
+  for (double& value : density.y) value /= unit.si * unit.si;
   power.traces = {std::move(density)};
   plots.push_back(std::move(power));
   Plot quantiles = small_plot("quantiles", "normal quantile", "residual quantile [std]");

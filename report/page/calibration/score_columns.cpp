@@ -1,5 +1,8 @@
 #include "report/page/calibration/score_columns.hpp"
 
+#include <cmath>
+#include <utility>
+
 #include "metrics/metric_table.hpp"
 #include "report/document/quantity.hpp"
 
@@ -7,7 +10,6 @@ namespace rigcal::report {
 namespace {
 
 constexpr int kDigits = 4;
-constexpr int kDigitsOfUncertainty = 2;
 
 doc::Quantity score_of(const metrics::MetricSpec& metric, double value, std::string_view unit) {
   if (metric.unit == "channel") return doc::readable(value, unit, kDigits);
@@ -34,8 +36,11 @@ std::vector<doc::Cell> score_cells(const metrics::Agreement& scores,
     cell.line = {score_of(metric, scores.*metric.value, unit)};
     if (uncertainty == nullptr) continue;
     const double half = uncertainty->*metric.value;
-    cell.below = {{"± ", metric.unit == "channel" ? doc::readable(half, unit, kDigitsOfUncertainty)
-                                                  : doc::in_unit(half, 1.0, kDigitsOfUncertainty)}};
+    doc::Quantity printed = doc::readable(half, unit, kErrorDigits);
+    if (metric.unit != "channel")
+      printed = {doc::Number(half).value,
+                 std::isnan(half) ? "–" : uncertainty_text(half, scores.*metric.value)};
+    cell.below = {{"± ", std::move(printed)}};
   }
   return cells;
 }

@@ -6,6 +6,7 @@
 #include "report/document/quantity.hpp"
 #include "report/document/words.hpp"
 #include "report/page/calibration/fit_sections.hpp"
+#include "report/page/calibration/shown_part.hpp"
 #include "report/page/page_parts.hpp"
 
 namespace rigcal::report {
@@ -53,7 +54,7 @@ Line caption_of(const StoredFit& fit, const std::string& channel) {
     rest += fmt::format("; {}: {}", condition.id,
                         own.empty() ? "not judged" : "limits of its own: " + own);
   }
-  return {channel, doc::Soft{rest}};
+  return {spaced(channel), doc::Soft{rest}};
 }
 
 /// Returns the tile of a condition, or std::nullopt if the channel is not compared in that
@@ -94,11 +95,45 @@ doc::Tile summary_of(const std::vector<const calib::ConditionResult*>& condition
   return tile;
 }
 
-/// A cell with more conditions shows only their number and the worst one.
+/// A cell with more conditions shows their number, the worst one, and as many pictures.
 constexpr std::size_t kMostTiles = 8;
 
+/// Small pictures of the channel of the motion, by condition.
+using Pictures = std::map<const calib::ConditionResult*, Plot>;
+
+Pictures pictures_of(const Calibration& stored, const std::string& channel) {
+  const std::vector<calib::ConditionResult>& conditions = stored.result.conditions;
+  Pictures pictures;
+  if (channel.empty()) return pictures;
+  for (const std::size_t i : shown_in_full(conditions)) {
+    if (auto picture = condition_picture(stored, i, channel))
+      pictures.emplace(&conditions[i], std::move(*picture));
+  }
+  return pictures;
+}
+
+/// Returns the tiles of a cell, each with its picture.
+std::vector<doc::Tile> tiles_of(const std::vector<const calib::ConditionResult*>& conditions,
+                                const std::string& channel, const Pictures& pictures) {
+  std::vector<doc::Tile> tiles;
+  const bool is_summary = conditions.size() > kMostTiles;
+  if (is_summary) tiles.push_back(summary_of(conditions, channel));
+  for (const calib::ConditionResult* condition : conditions) {
+    const auto picture = pictures.find(condition);
+    if (is_summary && (picture == pictures.end() || tiles.size() > kMostTiles)) continue;
+    doc::Tile tile = *tile_of(*condition, channel);
+    if (conditions.size() > 1) tile.below.push_back({tile.title});
+    if (picture != pictures.end()) tile.picture = picture->second;
+    tiles.push_back(std::move(tile));
+  }
+  return tiles;
+}
+
 /// Returns a table for each channel, with signals in rows and leak levels in columns.
-std::vector<doc::Table> matrices(const StoredFit& fit) {
+std::vector<doc::Table> matrices(const Calibration& stored) {
+  const StoredFit& fit = stored.result;
+  const std::string motion = shown_channel(fit.conditions);
+  const Pictures pictures = pictures_of(stored, motion);
   std::vector<std::string> channels;
   std::map<std::pair<double, std::string>,
            std::map<std::string, std::vector<const calib::ConditionResult*>>>
@@ -119,6 +154,7 @@ std::vector<doc::Table> matrices(const StoredFit& fit) {
     doc::Table table{"Scores of " + channel};
     table.caption = caption_of(fit, channel);
     table.shape = doc::Table::Shape::matrix;
+    if (levels.size() == 1) table.style = "flow";
     table.columns = {{"Signal"}};
     for (const std::string& level : levels)
       table.columns.push_back({level.empty() ? "no leak level" : "leak " + level});
@@ -131,14 +167,7 @@ std::vector<doc::Table> matrices(const StoredFit& fit) {
         std::vector<const calib::ConditionResult*> compared;
         for (const calib::ConditionResult* condition : found->second)
           if (tile_of(*condition, channel)) compared.push_back(condition);
-        if (compared.size() > kMostTiles) {
-          cell.tiles = {summary_of(compared, channel)};
-          continue;
-        }
-        for (const calib::ConditionResult* condition : compared)
-          cell.tiles.push_back(*tile_of(*condition, channel));
-        if (cell.tiles.size() > 1)
-          for (doc::Tile& tile : cell.tiles) tile.below.push_back({tile.title});
+        cell.tiles = tiles_of(compared, channel, channel == motion ? pictures : Pictures());
       }
       table.rows.push_back(std::move(row));
     }
@@ -174,26 +203,32 @@ doc::Table means_table(const StoredFit& fit) {
 
 }  // namespace
 
-doc::Section scores_section(const StoredFit& fit, bool unfinished) {
+doc::Section scores_section(const Calibration& stored, bool unfinished) {
+  const StoredFit& fit = stored.result;
   doc::Section section{"matrix", "Scores"};
   if (unfinished)
     section.blocks.emplace_back(doc::Paragraph{
         {"Stopped before it converged: these are scores of the best values so far, not of a "
          "calibration."},
         doc::Paragraph::Tone::problem});
-  std::vector<doc::Table> tables = matrices(fit);
+  std::vector<doc::Table> tables = matrices(stored);
   if (tables.empty()) {
     section.blocks.emplace_back(doc::reading("Nothing was scored."));
     return section;
   }
+  section.blocks.emplace_back(three_numbers(fit));
   section.blocks.emplace_back(doc::reading(
       "Agreement of model and measured mean: rho2 (1 is perfect) and, below it, the mean absolute "
-      "error in percent of the range. Each cell links to its condition."));
+      "error in percent of the range."));
+  section.blocks.emplace_back(doc::about_picture(
+      "The pictures show the last two periods, or the whole record of a recorded drive: measured "
+      "(dark, wide) and simulated (orange). Each cell links to its condition."));
   for (doc::Table& table : tables) section.blocks.emplace_back(std::move(table));
   doc::Table groups = means_table(fit);
   const std::string summary = fmt::format(
       "Means by use, signal, frequency, waveform and leak level ({})", groups.rows.size());
   section.blocks.emplace_back(doc::Fold{summary, {std::move(groups)}});
+  add_rig_response(stored, section.blocks);
   return section;
 }
 

@@ -153,10 +153,10 @@ TEST_CASE("acceptance: the noise is blamed where it alone keeps a score from its
   };
   const std::string blamed = "; the noise of the record allows ";
   CHECK_THAT(words({"rho2", 0.99, {}}, 0.9, {0.98, 1.0, 0.0}),
-             Contains("rho2 = 0.9 is below 0.99" + blamed + "0.98 at best"));
+             Contains("rho2 = 0.9000 is below 0.99" + blamed + "0.9800 at best"));
   CHECK_THAT(words({"rho2", 0.99, {}}, 0.9, {0.991, 0.1, 9.0}), !Contains(blamed));
   CHECK_THAT(words({"rho2", 0.99, {}}, 0.9, {0.99, 0.1, 9.0}), !Contains(blamed));
-  CHECK_THAT(words({"ccc", 0.99, {}}, 0.9, {1.0, 0.97, 0.0}), Contains(blamed + "0.97 at best"));
+  CHECK_THAT(words({"ccc", 0.99, {}}, 0.9, {1.0, 0.97, 0.0}), Contains(blamed + "0.9700 at best"));
   CHECK_THAT(words({"ccc", 0.99, {}}, 0.9, {0.1, 0.995, 9.0}), !Contains(blamed));
   const Question error{"absolute_error_percent", 2.0, {}};
   CHECK_THAT(words(error, 3.0, {1.0, 1.0, 2.5}),
@@ -166,7 +166,7 @@ TEST_CASE("acceptance: the noise is blamed where it alone keeps a score from its
   CHECK_THAT(words({"rmse", 1.0, {}}, 3.0, {0.0, 0.0, 9.0}), !Contains(blamed));
   // A warning is compared with the warning limit.
   CHECK_THAT(words({"rho2", 0.9, 0.99}, 0.95, {0.98, 1.0, 0.0}),
-             Contains("is below 0.99" + blamed + "0.98"));
+             Contains("is below 0.99" + blamed + "0.9800"));
 }
 
 TEST_CASE("acceptance: a check tells what it was made of", "[calib]") {

@@ -136,6 +136,28 @@ TEST_CASE("sandwich: rows of seven digits give the same covariance", "[calib]") 
   CHECK((found[0].covariance - exact[0].covariance).norm() < 1e-5 * exact[0].covariance.norm());
 }
 
+TEST_CASE("sandwich: without the own part, and with directions that are combinations themselves",
+          "[calib]") {
+  constexpr Index kSamples = 400;
+  ScoreRows rows;
+  rows.jacobian = slow_model(kSamples);
+  rows.residual = Noise(4).draw(kSamples, 0.7);
+  rows.channels = 2;
+  MatrixXd others(2, 3);
+  others << 0.5, -1.0, 2.0, 3.0, 0.25, -0.75;
+  MatrixXd all(5, 3);
+  all << MatrixXd::Identity(3, 3), others;
+  const MatrixXd none = MatrixXd::Zero(3, 3);
+  const auto apart = score_contributions({rows}, none, others)[0];
+  const auto together = score_contributions({rows}, none, all)[0];
+  const auto left_out = score_contributions({rows}, none, all, 1, OwnPart::left_out)[0];
+  CHECK((together.freedom.tail(2) - apart.freedom).norm() < 1e-12 * apart.freedom.norm());
+  CHECK((together.own.tail(2) - apart.own).norm() < 1e-12 * apart.own.norm());
+  CHECK(left_out.own.size() == 0);
+  CHECK(left_out.freedom == together.freedom);
+  CHECK(left_out.covariance == together.covariance);
+}
+
 TEST_CASE("sandwich: intervals cover under white, correlated and uneven noise", "[calib]") {
   const MatrixXd model = slow_model(1500);
   // If the directions are independent, the coverage of 600 intervals at 95 % has a binomial

@@ -23,6 +23,7 @@ Experiment everything(model::PlantKind plant) {
   e.set("stiffness", 2e4).set("coulomb_friction", 200.0).set("stribeck_friction", 300.0);
   e.set("external_force", 150.0).set("laminar_leakage", 2e-12).set("valve_null_leakage", 1e-12);
   e.set("load_gradient", 1e4).set("load_curvature", 1e5).set("leakage_resistance", 1e10);
+  e.set("supply_resistance", 2e9).set("supply_capacity", 1e-12);
   if (!chambers) {  // once, since they are the same for both plants
     e.set("payload_mass", 20.0).set("payload_frequency", 300.0).set("payload_damping_ratio", 0.1);
     e.set("bristle_stiffness", 2e6).set("bristle_damping", 2e3);
@@ -32,7 +33,6 @@ Experiment everything(model::PlantKind plant) {
     e.set("external_leakage_a", 1e-12).set("external_leakage_b", 2e-12);
     e.set("hose_capacity_a", 2e-13).set("hose_capacity_b", 1e-13);
     e.set("hose_yield", 2e6).set("hose_yield_ratio", 0.5);
-    e.set("supply_resistance", 2e9).set("supply_capacity", 1e-12);
     e.set("initial_pressure_a", 3e6).set("initial_pressure_b", 2.9e6);
     e.set("stroke", 0.02);  // short enough to reach the end stops
   } else {

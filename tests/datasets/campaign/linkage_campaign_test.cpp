@@ -254,10 +254,11 @@ TEST_CASE("load_campaign: what does not go together in a loop on the angle", "[d
         Row{"angle_kp", "torque_kp = \"1 mV/(N m)\"\nangle_kp",
             "torque_kp is a gain of a loop on torque, but this one is on angle"},
         Row{"angle_kp = \"0.2 V/deg\"\n", "", "the pid controller has no angle_kp"},
-        Row{"angle_kp", "kp", "unknown parameter 'kp'"},
+        Row{"angle_kp", "kp",
+            "is a parameter of load_pressure and two_chamber, and not of linkage"},
         Row{"angle_kp", "angle_kd = \"1 V s/rad\"\nangle_kp", "angle_kd without derivative_filter"},
         Row{"output_limit", "velocity_feedforward = \"1 V s/m\"\noutput_limit",
-            "unknown parameter 'velocity_feedforward'"},
+            "is a parameter of load_pressure and two_chamber, and not of linkage"},
         Row{"output_limit", "angular_velocity_feedforward = \"1 V s/rad\"\noutput_limit",
             "angular_velocity_feedforward without derivative_filter: expected the corner N"},
         Row{"output_limit",
@@ -396,6 +397,20 @@ TEST_CASE("load_campaign: exactly one law gives the travel of a linkage", "[data
   }
 }
 
+TEST_CASE("load_campaign: the cylinder of a linkage has friction of its own", "[datasets]") {
+  const auto with = [](const std::string& lines) {
+    return load_text(replaced(kArm, kLever, std::string(kLever) + "\n" + lines));
+  };
+  const auto campaign = with(
+      "coulomb_friction = \"1 kN\"\nseal_friction = \"1 cm2\"\nbristle_stiffness = \"10 N/um\"");
+  CHECK(value(campaign, "seal_friction") == Approx(1e-4));
+  CHECK(value(campaign, "bristle_stiffness") == Approx(1e7));
+  CHECK_THROWS_WITH(with("bristle_stiffness = \"1 N/um\""),
+                    Catch::Contains("expected coulomb_friction as well"));
+  CHECK_THROWS_WITH(with("film_velocity = \"0.1 m/s\""),
+                    Catch::Contains("expected film_growth_time as well"));
+}
+
 TEST_CASE("load_campaign: a rotary actuator has a displacement, and no linkage", "[datasets]") {
   const std::string areas = "area_a = \"75 cm2\"\narea_b = \"150 cm2\"\n";
   const std::string displacement = "displacement_per_radian = \"300 cm3/rad\"";
@@ -409,6 +424,12 @@ TEST_CASE("load_campaign: a rotary actuator has a displacement, and no linkage",
         Catch::Contains(
             "applies to a cylinder on a linkage, but displacement_per_radian makes the rig "
             "a rotary actuator: expected only one of them"));
+  }
+  for (const char* friction : {"coulomb_friction = \"1 N\"", "seal_friction = \"1 mm2\"",
+                               "bristle_damping = \"1 N s/m\"", "film_velocity = \"1 mm/s\""}) {
+    CAPTURE(friction);
+    CHECK_THROWS_WITH(load_text(replaced(vane, displacement, displacement + "\n" + friction)),
+                      Catch::Contains("whose friction is a moment: expected joint_friction"));
   }
   CHECK_THROWS_WITH(load_text(replaced(vane, displacement, "")),
                     Catch::Contains("no value for area_a: expected a known value or a start in "

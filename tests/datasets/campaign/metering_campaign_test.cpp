@@ -90,6 +90,23 @@ TEST_CASE("load_campaign: every term of valve, pump and friction has its unit", 
   CHECK(values["bristle_stiffness"] == Approx(1e7));
 }
 
+TEST_CASE("load_campaign: the supply of a load-pressure rig may give way", "[datasets]") {
+  const auto with = [](const std::string& lines) {
+    return load_text(replaced(test::kExample, "stiffness = ", lines + "\nstiffness = "));
+  };
+  const Campaign campaign = with(
+      "supply_resistance = \"1e10 Pa s/m3\"\nsupply_capacity = \"1e-13 m3/Pa\"\n"
+      "pump_flow = \"5 L/min\"\naccumulator_volume = \"0.2 L\"\n"
+      "accumulator_precharge = \"30 bar\"");
+  CHECK(values_in(campaign, campaign.conditions.front())["pump_flow"] == Approx(5e-3 / 60.0));
+  CHECK_THROWS_WITH(with("pump_flow = \"5 L/min\""), Catch::Contains("needs supply_resistance"));
+  CHECK_THROWS_WITH(with("relief_pressure = \"80 bar\""), Catch::Contains("expected it as well"));
+  // What it lacks is another plant's.
+  CHECK_THROWS_WITH(with("load_sensing_margin = \"20 bar\""),
+                    Catch::Contains("is a parameter of two_chamber and linkage, and not of "
+                                    "load_pressure, which this rig is"));
+}
+
 TEST_CASE("load_campaign: what does not go together behind a valve of two chambers", "[datasets]") {
   struct Row {
     const char* lines;

@@ -106,6 +106,24 @@ TEST_CASE("draft_campaign: a reference beside an accelerometer may be that of a 
   CHECK_THAT(drafted("t_s,ref_mm,x_mm,force_N"), !Contains("three_variable"));
 }
 
+TEST_CASE("draft_campaign: ticks of 100 ns, a count of samples, and values that are not exact",
+          "[datasets]") {
+  const TemporaryFolder folder;
+  std::string ticks = "Time[100ns],x_mm,Time[100ns],u_V\n";
+  std::string counts = "Nr;x_mm;u_V\n";
+  for (int i = 0; i < 20; ++i) {
+    ticks += fmt::format("{0},{1},{0},{2}\n", 133507764000000000 + 10000L * i, i % 5, i % 3);
+    counts += fmt::format("{};{};{}\n", i, i % 5, i % 3);
+  }
+  const std::string of_ticks =
+      draft_campaign({folder.write("ticks.csv", ticks)}, folder.path()).text;
+  CHECK_THAT(of_ticks, Contains("column = \"Time[100ns]\", unit = \"us\", gain = 0.1 }") &&
+                           Contains("20 samples at 1000"));
+  CHECK_THAT(of_ticks, Contains("counts as exact unless") && Contains("prior_sd = ..."));
+  CHECK_THAT(draft_campaign({folder.write("counts.csv", counts)}, folder.path()).text,
+             Contains("perhaps 'Nr'") && Contains("a count of samples needs gain = ..."));
+}
+
 TEST_CASE("draft_campaign: an angle makes a linkage, and its pilot pressures one drive",
           "[datasets]") {
   const TemporaryFolder folder;
@@ -568,7 +586,7 @@ TEST_CASE("draft_campaign: columns that nothing recognises, with their ranges", 
   CHECK_THAT(draft, Contains("time = { column = \"FILL IN\", unit = \"s\" }") &&
                         Contains("position = { column = \"FILL IN\", unit = \"FILL IN\" }"));
   CHECK_THAT(draft,
-             Contains("# perhaps 'A1' (0 to 9.5)\n") &&
+             Contains("# perhaps 'A1' (0 to 9.5); a count of samples needs gain") &&
                  Contains("{ column = \"A1\", unit = \"FILL IN\" }  # 0 to 9.5, perhaps time") &&
                  Contains("unit = \"bar\" }  # 3 to 6 bar, perhaps pressure_a") &&
                  Contains("# not columns of numbers: note\n"));
@@ -726,6 +744,10 @@ TEST_CASE("draft_campaign: the channels suggest terms of valve, supply, load and
   }
   for (const char* key : {"velocity_feedforward", "acceleration_feedforward"})
     CHECK(offers(bare_loop, key));
+  const std::string supplied = drafted("t,ref_mm,x_mm,pl_bar,ps_bar");
+  for (const char* key : {"supply_resistance", "pump_flow", "accumulator_volume"})
+    CHECK((offers(supplied, key) && !offers(loop, key)));
+  CHECK_FALSE(offers(supplied, "load_sensing_margin"));
 
   const std::string open = drafted("t,u_V,x_mm,pA_bar,pB_bar,ps_bar,spool_mm");
   for (const char* key : {"valve_exponent", "opening_20", "compensator_pressure", "main_spool_gain",
@@ -741,10 +763,12 @@ TEST_CASE("draft_campaign: the channels suggest terms of valve, supply, load and
     CAPTURE(key);
     CHECK_FALSE(offers(less, key));
   }
-  // A joint has no seals of a slide.
+  // The cylinder of a joint has seals, but no load over its travel.
   const std::string joint = drafted("t,u_V,angle_deg,pA_bar,pB_bar,ps_bar");
   CHECK((offers(joint, "leakage_resistance") && offers(joint, "accumulator_volume")));
-  CHECK_FALSE((offers(joint, "seal_friction") || offers(joint, "load_curvature")));
+  CHECK((offers(joint, "seal_friction") && offers(joint, "coulomb_friction")));
+  CHECK((offers(joint, "bristle_stiffness") && !offers(joint, "load_curvature")));
+  CHECK_FALSE(offers(drafted("t,u_V,angle_deg"), "bristle_stiffness"));
 }
 
 TEST_CASE("draft_campaign: an array of Simulink's To File has its time in the first row",

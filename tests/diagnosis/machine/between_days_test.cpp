@@ -154,7 +154,7 @@ TEST_CASE("in_words: each size in the unit of its quantity", "[diagnosis]") {
                         {"oil_temperature", "oil", "K", 3.0, "", 0}};
   between.other_days = {"2026-01-02"};
   CHECK_THAT(diagnosis::in_words(between).value(),
-             Contains("supply 2 MPa") && Contains("position 0.02 mm") && Contains("start 0.5 ms") &&
+             Contains("supply 2 MPa") && Contains("position 20 µm") && Contains("start 0.5 ms") &&
                  Contains("oil 3 K"));
 }
 

@@ -385,6 +385,74 @@ TEST_CASE("equations: a cylinder with a load-sensing pump and friction with pre-
   CHECK(indicators[13] == Approx(steady_film(x[1], 0.1, 1e-3) - x[6]).margin(1e-12));
 }
 
+TEST_CASE("equations: an arm whose cylinder rubs moves as it is simulated", "[model]") {
+  Experiment e = arm_rig();
+  e.set("lever_gradient", -0.1).set("coulomb_friction", 2e3).set("stribeck_friction", 1e3);
+  e.set("seal_friction", 1e-4).set("bristle_stiffness", 1e7).set("film_velocity", 0.1);
+  e.set("film_growth_time", 0.05).set("film_decay_time", 0.2).set("film_dwell_time", 5.0);
+  e.inputs.drive = Signal::constant(2e6);
+  e.times_s = {0.0, 0.3};
+  e.outputs = {Output::angle, Output::pressure_a, Output::force, Output::torque};
+  e.options.tolerance = 1e-8;
+  const Simulation run = e();
+  INFO(run.reason);
+  REQUIRE(run.ok());
+  const ExportedRig rig = exported(e);
+  CHECK(names(rig) == std::vector<std::string>{"angle", "angular_velocity", "pressure_a",
+                                               "pressure_b", "bristle_force", "film_thickness"});
+  const auto equations = make_equations(rig);
+  equations->set(rig.values, inputs_of(2e6, 2e7, 2e5), 1.0);
+  std::vector<double> x = equations->initial();
+  StepMemory memory;
+  equations->advance(x, memory, 0.0, 0.3, 1e-8);
+  REQUIRE(run.outputs(1, 0) > 0.02);
+  CHECK(x[0] == Approx(run.outputs(1, 0)).epsilon(1e-5));
+  CHECK(x[2] == Approx(run.outputs(1, 1)).epsilon(1e-5));
+  CHECK(equations->output(Output::force, x) == Approx(run.outputs(1, 2)).epsilon(1e-5));
+  CHECK(equations->output(Output::torque, x) == Approx(run.outputs(1, 3)).epsilon(1e-5));
+  // Both directions of the spool, both stops, the seals, the reversal of the piston, and the growth
+  // of its film.
+  const std::vector<double> indicators = equations->indicators(x);
+  REQUIRE(indicators.size() == 7);
+  const double v = (0.3 - 0.1 * x[0]) * x[1];
+  CHECK(indicators[4] == Approx(x[2] - x[3]));
+  CHECK(indicators[5] == Approx(v));
+  CHECK(indicators[6] == Approx(steady_film(v, 0.1, 1e-3) - x[5]).margin(1e-12));
+}
+
+TEST_CASE("equations: a load-pressure rig has a supply that gives way as it is simulated",
+          "[model]") {
+  Experiment e;
+  e.rig.controller = ControllerKind::none;
+  e.set("supply_resistance", 1e10).set("supply_capacity", 1e-13).set("pump_flow", 7e-5);
+  e.set("accumulator_volume", 1e-6).set("accumulator_precharge", 3e6);
+  e.set("relief_pressure", 4e6).set("relief_conductance", 1e-11);
+  e.inputs.drive = Signal::constant(2.0);
+  e.times_s = {0.0, 0.1};
+  e.options.tolerance = 1e-10;
+  const Simulation run = e();
+  INFO(run.reason);
+  REQUIRE(run.ok());
+  const ExportedRig rig = exported(e);
+  CHECK(names(rig) ==
+        std::vector<std::string>{"position", "velocity", "load_pressure", "valve_supply_pressure"});
+  const auto equations = make_equations(rig);
+  equations->set(rig.values, inputs_of(2.0, 6.2e6), 1.0);
+  std::vector<double> x = equations->initial();
+  CHECK(x[3] == 6.2e6);
+  StepMemory memory;
+  equations->advance(x, memory, 0.0, 0.1, 1e-10);
+  REQUIRE(run.outputs(1, 0) > 1e-3);
+  CHECK(x[0] == Approx(run.outputs(1, 0)).epsilon(1e-6));
+  CHECK(x[2] == Approx(run.outputs(1, 1)).epsilon(1e-5));
+  // One indicator each for the sign of the spool, both relief valves and the limit of the pump.
+  const std::vector<double> indicators = equations->indicators(x);
+  REQUIRE(indicators.size() == 4);
+  CHECK(indicators[1] == Approx(4e6 - 0.5 * (x[3] + x[2])));
+  CHECK(indicators[2] == Approx(4e6 - 0.5 * (x[3] - x[2])));
+  CHECK(indicators[3] == Approx(7e-5 - (6.2e6 - x[3]) / 1e10));
+}
+
 TEST_CASE("equations: a step that was planned at rest is repeated when the drive jumps",
           "[model]") {
   const ExportedRig rig = rig_with({});

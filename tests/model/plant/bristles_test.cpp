@@ -1,5 +1,6 @@
-// Tests friction with pre-sliding: against closed forms, and against an integrator and a right-hand
-// side in this file (docs/model.md, section 2).
+// Tests friction with pre-sliding, of a piston that slides and of one that turns an arm: against
+// closed forms, and against an integrator and a right-hand side in this file (docs/model.md,
+// sections 2 and 9).
 
 #include <array>
 #include <catch2/catch.hpp>
@@ -8,6 +9,7 @@
 #include "model/plant/layout.hpp"
 #include "model/plant/terms.hpp"
 #include "tests/model/end_of_run.hpp"
+#include "tests/model/own_arm.hpp"
 #include "tests/model/runge_kutta.hpp"
 #include "tests/model/sensitivity.hpp"
 #include "tests/model/two_chamber_rig.hpp"
@@ -191,7 +193,11 @@ TEST_CASE("bristles: a record that begins in motion begins with bent bristles", 
     e.set("initial_velocity", v);
     e.times_s = {0.0};
     REQUIRE(layout_of(e.rig, e.values, {}, 4).bristles == 4);
+    e.unset("seal_friction");
     CHECK_THAT(end_of_run(e).state[4], WithinRel(std::copysign(60.0, v), 1e-12));
+    // Seals are pressed on from the start.
+    e.set("seal_friction", 2e-5).set("initial_pressure_a", 5e6).set("initial_pressure_b", 3e6);
+    CHECK_THAT(end_of_run(e).state[4], WithinRel(std::copysign(100.0, v), 1e-12));
   }
 }
 
@@ -325,4 +331,159 @@ TEST_CASE("film: both halves of a period are simulated, since a film has no dire
   REQUIRE(whole.ok());
   CHECK(early.steps < whole.steps / 3);
   CHECK(difference(whole.outputs, early.outputs) < 1e-4);
+}
+
+namespace {
+
+/// own_arm() without a controller, whose cylinder has seals that rub by the pressure.
+Experiment rubbing_arm() {
+  Experiment e = own_arm(Feedback::angle);
+  e.rig.controller = ControllerKind::none;
+  e.set("coulomb_friction", 800.0).set("stribeck_friction", 600.0).set("stribeck_velocity", 0.05);
+  e.set("friction_smoothing", 2e-3).set("seal_friction", 1e-4);
+  return e;
+}
+
+/// Magnitude of the friction of rubbing_arm() while its piston slides [N].
+double rubbing(double v, double across_pa, double film) {
+  return 800.0 + 600.0 * (1.0 - film) * std::exp(-v * v / (0.05 * 0.05)) +
+         1e-4 * std::abs(across_pa);
+}
+
+}  // namespace
+
+TEST_CASE("linkage: the friction of its cylinder follows an integrator of another kind",
+          "[model]") {
+  Experiment e = rubbing_arm();
+  e.set("bristle_stiffness", 1e7).set("bristle_damping", 1e4);
+  e.set("film_velocity", 0.08).set("film_growth_time", 0.02).set("film_decay_time", 0.06);
+  e.set("film_dwell_time", 0.5);
+  e.inputs.drive = Signal::sine(2.0, 0.7);
+  e.times_s = grid(0.0, 2.0, 21);
+  e.outputs = {Output::angle,      Output::angular_velocity,
+               Output::pressure_a, Output::pressure_b,
+               Output::force,      Output::torque};
+  const Simulation run = e();
+  INFO(run.reason);
+  REQUIRE(run.ok());
+  // Angle, angular velocity, both pressures, spool signal, bristles and film.
+  using ArmState = std::array<double, 7>;
+  const auto bristles = [](const ArmState& x) {
+    const double v = own_lever(x[0]) * x[1];
+    return 1e7 * (v - std::abs(v) * x[5] / rubbing(v, x[2] - x[3], x[6]));
+  };
+  const auto friction_n = [&](const ArmState& x) { return x[5] + 1e4 / 1e7 * bristles(x); };
+  const auto film = [](const ArmState& x) {
+    const double v = own_lever(x[0]) * x[1];
+    const double root = v * v / std::pow(v * v + 4e-6, 2.0 / 3.0);
+    const double steady = std::min(root / std::pow(0.08, 2.0 / 3.0), 1.0);
+    const double still = std::exp(-v * v / 4e-6);
+    return (steady - x[6]) * (still / 0.5 + (1.0 - still) / (x[6] < steady ? 0.02 : 0.06));
+  };
+  const auto rates = [&](const ArmState& x, double t) -> ArmState {
+    const auto arm =
+        own_arm_rates(x, own_lever(x[0]) * friction_n(x), 2.0 * std::sin(2.0 * kPi * 0.7 * t));
+    return {arm[0], arm[1], arm[2], arm[3], arm[4], bristles(x), film(x)};
+  };
+  const Eigen::MatrixXd states =
+      runge_kutta(ArmState{0.0, 0.0, run.outputs(0, 2), run.outputs(0, 3)}, e.times_s, 4000, rates);
+  Eigen::MatrixXd other(states.rows(), 6);
+  other.leftCols(4) = states.leftCols(4);
+  for (Eigen::Index i = 0; i < states.rows(); ++i) {
+    ArmState x{};
+    for (std::size_t k = 0; k < x.size(); ++k) x[k] = states(i, static_cast<Eigen::Index>(k));
+    other(i, 4) = 4e-3 * x[2] - 2.4e-3 * x[3] - friction_n(x);
+    other(i, 5) = own_lever(x[0]) * other(i, 4);
+  }
+  REQUIRE(peak(other.col(0)) > 0.1);
+  REQUIRE(peak(other.col(0)) < 0.99);
+  REQUIRE(peak(states.col(6)) > 0.8);
+  CHECK(difference(run.outputs, other) < 1e-4);
+  e.options.method = Method::dopri5;
+  const Simulation explicit_run = e();
+  REQUIRE(explicit_run.ok());
+  CHECK(difference(run.outputs, explicit_run.outputs) < 1e-5);
+}
+
+TEST_CASE("linkage: a slow moment bends the bristles of the cylinder by its lever", "[model]") {
+  // Equal areas, joined by a wide laminar path: only friction and a moment that grows with the
+  // angle resist. The arm is where the lever is 0.4 m/rad, and damped, since bristles creep under
+  // an arm that swings.
+  Experiment e = arm_rig();
+  e.set("joint_damping", 2e4);
+  e.rig.initial = InitialState::given;
+  e.set("area_b", 4e-3).set("laminar_leakage", 1e-5).set("lever_gradient", 0.2);
+  e.set("initial_angle", 0.5).set("gravity_moment", -1e3).set("gravity_moment_gradient", 2e3);
+  e.set("coulomb_friction", 200.0).set("stribeck_friction", 80.0).set("stribeck_velocity", 0.02);
+  e.set("bristle_stiffness", 1e6).set("bristle_damping", 500.0);
+  e.inputs.drive = Signal::constant(0.0);
+  e.inputs.external_load =
+      Signal::linear({0.0, 50.0, 51.0, 101.0, 102.0}, {0.0, -60.0, -60.0, 0.0, 0.0});
+  e.times_s = {0.0, 50.9, 102.0};
+  e.outputs = {Output::angle, Output::position, Output::force, Output::torque};
+  e.options.tolerance = 1e-10;
+  const Simulation run = e();
+  INFO(run.reason);
+  REQUIRE(run.ok());
+  const auto lever = [&](Eigen::Index i) { return 0.3 + 0.2 * run.outputs(i, 0); };
+  const auto spring = [&](Eigen::Index i) { return 2e3 * (run.outputs(i, 0) - 0.5); };
+  const double out_m = run.outputs(1, 1) - run.outputs(0, 1);
+  const double out_n = bent(out_m, 0.0);
+  CHECK_THAT(lever(1) * out_n + spring(1), WithinRel(60.0, 1e-3));
+  CHECK(out_m > 1.1 * lever(1) * (60.0 / (0.16e6 + 2e3)));  // further than a linear spring gives
+  const double back_m = run.outputs(2, 1) - run.outputs(1, 1);
+  REQUIRE(run.outputs(2, 0) - 0.5 > 0.05 * (run.outputs(1, 0) - 0.5));
+  CHECK_THAT(lever(2) * bent(back_m, out_n) + spring(2), WithinAbs(0.0, 0.04));
+  // Rod and joint feel what the oil exerts less the friction.
+  CHECK_THAT(run.outputs(1, 3), WithinRel(lever(1) * run.outputs(1, 2), 1e-9));
+  CHECK_THAT(run.outputs(1, 2), WithinRel(-out_n, 1e-2));
+}
+
+TEST_CASE("linkage: seals rub more where pressure presses them on", "[model]") {
+  for (const double direction : {1.0, -1.0}) {
+    for (const bool pre_sliding : {false, true}) {
+      CAPTURE(direction, pre_sliding);
+      Experiment e = rubbing_arm();
+      e.set("lever_gradient", 0.0)
+          .set("gravity_moment", 2e3 * direction)
+          .set("joint_friction", 50.0);
+      if (pre_sliding) e.set("bristle_stiffness", 1e7).set("bristle_damping", 1e4);
+      e.inputs.drive = Signal::constant(0.3 * direction);
+      e.times_s = {0.0, 3.0};
+      e.outputs = {Output::angular_velocity, Output::pressure_a, Output::pressure_b, Output::force,
+                   Output::torque};
+      const Simulation run = e();
+      INFO(run.reason);
+      REQUIRE(run.ok());
+      const double omega = run.outputs(1, 0);
+      REQUIRE(direction * omega > 0.02);
+      const double across_pa = run.outputs(1, 1) - run.outputs(1, 2);
+      const double friction_n = direction * rubbing(0.3 * omega, across_pa, 0.0);
+      const double load = 1e4 * omega + 2e3 * direction;
+      CHECK_THAT(own_moment(0.0, run.outputs(1, 1), run.outputs(1, 2)),
+                 WithinRel(load + 50.0 * direction + 0.3 * friction_n, 1e-4));
+      CHECK_THAT(run.outputs(1, 4), WithinRel(load, 1e-4));
+      CHECK_THAT(0.3 * run.outputs(1, 3), WithinRel(load + 50.0 * direction, 1e-4));
+    }
+  }
+}
+
+TEST_CASE("linkage: a record that begins in motion begins with the friction of its piston",
+          "[model]") {
+  Experiment e = rubbing_arm();
+  e.rig.initial = InitialState::given;
+  e.set("bristle_stiffness", 1e7).set("film_velocity", 0.2).set("film_growth_time", 0.02);
+  e.set("film_decay_time", 0.06).set("film_dwell_time", 0.5);
+  e.set("initial_angular_velocity", -0.2).set("initial_angle", 0.5);
+  e.set("initial_pressure_a", 5e6).set("initial_pressure_b", 3e6);
+  e.inputs.drive = Signal::constant(0.0);
+  e.times_s = {0.0};
+  e.outputs = {Output::force, Output::velocity};
+  const Simulation run = e();
+  INFO(run.reason);
+  REQUIRE(run.ok());
+  const double v = -0.2 * own_lever(0.5);
+  CHECK_THAT(run.outputs(0, 1), WithinRel(v, 1e-12));
+  const double film = std::pow(std::abs(v) / 0.2, 2.0 / 3.0);
+  CHECK_THAT(run.outputs(0, 0), WithinRel(4e-3 * 5e6 - 2.4e-3 * 3e6 + rubbing(v, 2e6, film), 1e-3));
 }

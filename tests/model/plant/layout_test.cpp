@@ -50,6 +50,10 @@ TEST_CASE("layout_of: either dry-friction term brings friction", "[model]") {
     CHECK(terms.friction);
     CHECK(terms.stribeck == values.is_given("stribeck_friction"));
   }
+  auto values = ParameterValues::defaults(PlantKind::linkage);
+  values.set("joint_friction", 1.0);
+  const PresentTerms terms = layout_of({PlantKind::linkage, {}, {}}, values, {}, 4).terms;
+  CHECK((terms.joint_friction && !terms.friction));
 }
 
 TEST_CASE("layout_of: a leak of zero takes part only where it is free", "[model]") {

@@ -34,11 +34,18 @@ double spool_edge_flow(double opening_m, double head_pa) {
 
 TEST_CASE("linkage: with a constant lever it is the cylinder that slides", "[model]") {
   constexpr double kLever = 0.25;
+  const NamedValues coulomb{{"coulomb_friction", 20.0}, {"friction_smoothing", 0.01}};
+  const NamedValues seals{
+      {"coulomb_friction", 20.0},  {"friction_smoothing", 0.01}, {"stribeck_friction", 15.0},
+      {"stribeck_velocity", 0.05}, {"seal_friction", 1e-5},      {"bristle_stiffness", 1e5},
+      {"bristle_damping", 100.0},  {"film_velocity", 0.08},      {"film_growth_time", 0.02},
+      {"film_decay_time", 0.06},   {"film_dwell_time", 0.5}};
+  const bool of_joint = GENERATE(true, false);
   Experiment sliding = single_rod_rig();
+  for (const auto& [key, value] : of_joint ? coulomb : seals) sliding.set(key, value);
   sliding.set("stop_stiffness", 2e6).set("stop_damping", 20.0).set("external_force", 60.0);
   sliding.set("valve_time_constant", 5e-3).set("supply_resistance", 2e10);
-  sliding.set("supply_capacity", 5e-12).set("coulomb_friction", 20.0);
-  sliding.set("friction_smoothing", 0.01).set("air_fraction", 0.01);
+  sliding.set("supply_capacity", 5e-12).set("air_fraction", 0.01);
   sliding.set("external_leakage_a", 2e-13).set("valve_null_leakage", 1e-13);
   sliding.set("leakage_coefficient", 0.02).set("valve_dead_band", 0.1).set("valve_offset", 0.05);
   sliding.set("gain_b_to_tank", 1.3);
@@ -55,7 +62,10 @@ TEST_CASE("linkage: with a constant lever it is the cylinder that slides", "[mod
   }
   turning.set("lever", kLever).set("inertia", 5.0 * kLever * kLever);
   turning.set("joint_damping", 200.0 * kLever * kLever).set("gravity_moment", 60.0 * kLever);
-  turning.set("joint_friction", 20.0 * kLever).set("joint_friction_smoothing", 0.01 / kLever);
+  if (of_joint) {
+    turning.unset("coulomb_friction").unset("friction_smoothing");
+    turning.set("joint_friction", 20.0 * kLever).set("joint_friction_smoothing", 0.01 / kLever);
+  }
   turning.set("lower_stop", -0.1 / kLever).set("upper_stop", 0.1 / kLever);
   turning.set("stop_stiffness", 2e6 * kLever * kLever).set("stop_damping", 20.0 * kLever);
   sliding.outputs = {Output::position,   Output::velocity,      Output::pressure_a,
@@ -367,6 +377,32 @@ TEST_CASE("linkage: sensitivities are exact against differences, every parameter
   check({"joint, sensors and leaks", Signal::sine(3e6, 10.0), joint, none, InitialState::given},
         arm_rig());
   check({"pilot valve and pump", Signal::sine(3e6, 8.0), valve, none}, arm_rig());
+  check({"cylinder with pre-sliding and seals",
+         Signal::sine(3e6, 8.0),
+         {{"lever_gradient", 0.3},
+          {"coulomb_friction", 4e3},
+          {"stribeck_friction", 4e3},
+          {"stribeck_velocity", 0.1},
+          {"seal_friction", 3e-4},
+          {"bristle_stiffness", 4e6},
+          {"bristle_damping", 4e4}},
+         none},
+        arm_rig());
+  check({"cylinder on a lubricant film",
+         Signal::sine(3e6, 8.0),
+         {{"lever_gradient", 0.3},
+          {"coulomb_friction", 2e3},
+          {"stribeck_friction", 2e4},
+          {"stribeck_velocity", 0.3},
+          {"friction_smoothing", 0.04},
+          {"bristle_stiffness", 1e7},
+          {"bristle_damping", 1e4},
+          {"film_velocity", 0.1},
+          {"film_growth_time", 0.01},
+          {"film_decay_time", 0.02},
+          {"film_dwell_time", 0.02}},
+         none},
+        arm_rig());
   check({"open centre", Signal::sine(3e6, 8.0), centre, none}, arm_rig());
   const NamedValues triangle{{"triangle_base", 1.2},
                              {"triangle_arm", 0.35},

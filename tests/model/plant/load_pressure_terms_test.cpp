@@ -7,6 +7,7 @@
 
 #include "model/plant/load_pressure.hpp"
 #include "tests/model/rig.hpp"
+#include "tests/model/runge_kutta.hpp"
 
 using namespace rigcal::model;
 using Catch::WithinAbs;
@@ -225,4 +226,116 @@ TEST_CASE("load_pressure: what acts in one direction cannot be reversed", "[mode
   terms.external_load = false;
   terms.valve_offset = true;
   CHECK_FALSE(LoadPressurePlant::reversible(Output::position, terms));
+  terms.valve_offset = false;
+  terms.relief = true;
+  CHECK(LoadPressurePlant::reversible(Output::position, terms));
+  terms.supply = 3;
+  CHECK_FALSE(LoadPressurePlant::reversible(Output::position, terms));
+}
+
+TEST_CASE("load_pressure: the supply gives way by its flow, up to what the pump can give",
+          "[model]") {
+  for (const double command_v : {2.0, -2.0}) {
+    CAPTURE(command_v);
+    Experiment e = driven_by(command_v);
+    e.set("valve_null_leakage", 1e-12);
+    e.set("supply_resistance", 2e10).set("supply_capacity", 1e-13);
+    const SteadyLoad s = steady_load(e);
+    const double supply_pa = s.p_A + s.p_B;
+    const double to_load = s.servo_flow + 1e-12 * s.P_L;
+    CHECK_THAT(6.2e6 - supply_pa, WithinRel(2e10 * (std::abs(to_load) + 1e-12 * supply_pa), 1e-6));
+    REQUIRE(supply_pa < 5e6);
+    const double direction = command_v < 0.0 ? -1.0 : 1.0;
+    CHECK_THAT(to_load, WithinRel(0.6 * 0.02075 * travel(command_v) *
+                                      pressure_root((supply_pa - direction * s.P_L) / 847.0),
+                                  1e-6));
+    e.set("valve_null_leakage", 0.0).set("pump_flow", 5e-5);
+    const SteadyLoad limited = steady_load(e);
+    CHECK_THAT(kArea_m2 * limited.v, WithinRel(direction * 5e-5, 1e-6));
+    CHECK(limited.p_A + limited.p_B < 6.2e6 - 2e10 * 5e-5);
+  }
+}
+
+TEST_CASE("load_pressure: an accumulator gives oil by the gas law", "[model]") {
+  Experiment e = driven_by(1.0);
+  e.set("supply_resistance", 1e15).set("supply_capacity", 1e-18);  // no flow from the pump
+  e.set("accumulator_volume", 1e-3).set("accumulator_precharge", 2.5e6);
+  e.set("accumulator_exponent", 1.25);
+  e.outputs = {Output::position, Output::load_pressure, Output::pressure_a, Output::pressure_b};
+  const Simulation run = e();
+  INFO(run.reason);
+  REQUIRE(run.ok());
+  const auto gas_m3 = [](double p_pa) {
+    return 1e-3 * std::pow((2.5e6 + 101325.0) / (p_pa + 101325.0), 1.0 / 1.25);
+  };
+  const double supply_pa = run.outputs(1, 2) + run.outputs(1, 3);
+  REQUIRE(supply_pa > 3e6);
+  REQUIRE(supply_pa < 5.5e6);
+  const double compressed_m3 = 2.46888e-4 / (4.0 * 689e6) * run.outputs(1, 1);
+  CHECK_THAT(gas_m3(supply_pa) - gas_m3(6.2e6),
+             WithinRel(kArea_m2 * run.outputs(1, 0) + compressed_m3, 1e-4));
+}
+
+TEST_CASE("load_pressure: a relief valve opens where a load pushes the piston", "[model]") {
+  for (const double direction : {1.0, -1.0}) {
+    CAPTURE(direction);
+    Experiment e = driven_by(0.0);
+    e.set("external_force", 1.2e4 * direction);
+    e.set("relief_pressure", 6.5e6).set("relief_conductance", 1e-10);
+    const SteadyLoad s = steady_load(e);
+    const double pressed_pa = direction > 0.0 ? s.p_A : s.p_B;
+    REQUIRE(direction * s.v < -1e-3);
+    // Half of the flow, since the other chamber takes in as little as it likes.
+    CHECK_THAT(0.5 * 1e-10 * (pressed_pa - 6.5e6), WithinRel(-direction * kArea_m2 * s.v, 1e-6));
+    CHECK_THAT(kArea_m2 * s.P_L, WithinRel(1.2e4 * direction + 4000.0 * s.v, 1e-6));
+  }
+}
+
+TEST_CASE("load_pressure: a supply that gives way follows an integrator of another kind",
+          "[model]") {
+  Experiment e = driven_by(0.0);
+  e.inputs.drive = Signal::sine(3.0, 5.0);
+  e.set("valve_null_leakage", 2e-12).set("external_force", 4000.0);
+  e.set("supply_resistance", 1e10).set("supply_capacity", 1e-13).set("pump_flow", 7e-5);
+  e.set("accumulator_volume", 2e-6).set("accumulator_precharge", 3e6);
+  e.set("accumulator_exponent", 1.3).set("relief_pressure", 3.7e6).set("relief_conductance", 2e-11);
+  e.times_s = grid(0.0, 0.4, 41);
+  e.outputs = {Output::position, Output::velocity, Output::load_pressure, Output::pressure_a};
+  const Simulation run = e();
+  INFO(run.reason);
+  REQUIRE(run.ok());
+  using RigState = std::array<double, 4>;  // position, velocity, load pressure, supply pressure
+  const auto gas = [](double supply_pa) {
+    const double p = supply_pa + 101325.0;
+    const double first = 3e6 + 101325.0;
+    const double above = 0.5 * (std::tanh((p - first) / (0.02 * first)) + 1.0);
+    return above * 2e-6 / (1.3 * p) * std::pow(first / p, 1.0 / 1.3);
+  };
+  const auto relieved = [](double chamber_pa) { return 2e-11 * std::max(chamber_pa - 3.7e6, 0.0); };
+  bool limited = false;
+  bool opened = false;
+  const auto rates = [&](const RigState& x, double t) -> RigState {
+    const double spool_m = travel(3.0 * std::sin(10.0 * kPi * t));
+    const double open = 0.6 * 0.02075 * std::abs(spool_m) / std::sqrt(847.0);
+    const double side = spool_m < 0.0 ? -1.0 : 1.0;
+    const double through = open * rounded_root(x[3] - side * x[2]);
+    const double lost = 0.5 * (relieved(0.5 * (x[3] + x[2])) - relieved(0.5 * (x[3] - x[2])));
+    const double pumped = std::min((6.2e6 - x[3]) / 1e10, 7e-5);
+    limited = limited || pumped == 7e-5;
+    opened = opened || lost > 1e-6;
+    return {x[1], (kArea_m2 * x[2] - 4000.0 * x[1] - 4000.0) / 85.0,
+            4.0 * 689e6 / 2.46888e-4 * (side * through - 2e-12 * x[2] - lost - kArea_m2 * x[1]),
+            (pumped - through - 2e-12 * x[3]) / (1e-13 + gas(x[3]))};
+  };
+  const Eigen::MatrixXd states =
+      runge_kutta(RigState{0.0, 0.0, 0.0, 6.2e6}, e.times_s, 4000, rates);
+  Eigen::MatrixXd other = states;
+  other.col(3) = 0.5 * (states.col(3) + states.col(2));
+  REQUIRE(peak(other.col(0)) > 1e-3);
+  CHECK((limited && opened));
+  CHECK(difference(run.outputs, other) < 3e-5);
+  e.options.method = Method::dopri5;
+  const Simulation explicit_run = e();
+  REQUIRE(explicit_run.ok());
+  CHECK(difference(run.outputs, explicit_run.outputs) < 3e-5);
 }

@@ -264,9 +264,9 @@ TEST_CASE("comparison: the unit is that of the largest estimate", "[report]") {
   pressure.unit = "Pa";
   pressure.estimates[0]->value = -7e6;
   pressure.estimates[1]->value = 3.0;
-  CHECK(unit_of_estimates(pressure).name == readable_unit(7e6, "Pa").name);
-  CHECK(unit_of_estimates(pressure).si == readable_unit(7e6, "Pa").si);
-  REQUIRE(readable_unit(7e6, "Pa").si != readable_unit(3.0, "Pa").si);
+  CHECK(unit_of_estimates(pressure).name == rigcal::readable_unit(7e6, "Pa").name);
+  CHECK(unit_of_estimates(pressure).si == rigcal::readable_unit(7e6, "Pa").si);
+  REQUIRE(rigcal::readable_unit(7e6, "Pa").si != rigcal::readable_unit(3.0, "Pa").si);
 }
 
 TEST_CASE("comparison: rows of what some result estimates, or of known values that differ",

@@ -100,3 +100,20 @@ TEST_CASE("decimate: constant, empty and huge ranges are no special case", "[rep
   const double most = std::numeric_limits<double>::max();
   CHECK(std::isfinite(quantised(std::vector<double>{-most, most}).step));
 }
+
+TEST_CASE("column_bars: one bar a column, which no line joins to the next", "[report]") {
+  std::vector<double> values(1000);
+  for (std::size_t i = 0; i < values.size(); ++i) values[i] = i % 2 == 0 ? 1.0 : 3.0;
+  values[123] = 9.0;
+  std::fill(values.begin() + 500, values.begin() + 520, std::nan(""));
+  const Bars bars = column_bars(values, 50);
+  REQUIRE(bars.x.size() == 3 * 49);  // the column without values has no bar
+  for (std::size_t i = 0; i < bars.x.size(); i += 3) {
+    CHECK(bars.x[i] == bars.x[i + 1]);
+    CHECK(bars.y[i] == 1.0);
+    CHECK(bars.y[i + 1] == (i == 18 ? 9.0 : 3.0));
+    CHECK(std::isnan(bars.y[i + 2]));
+  }
+  CHECK(bars.x.front() == 10.0);
+  CHECK(column_bars({}, 50).x.empty());
+}

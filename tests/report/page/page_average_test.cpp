@@ -1,4 +1,8 @@
+#include <fmt/format.h>
+
+#include <algorithm>
 #include <catch2/catch.hpp>
+#include <cmath>
 
 #include "common/error.hpp"
 #include "report/page/page.hpp"
@@ -62,7 +66,7 @@ TEST_CASE("page: the repeats of every condition, their offsets and the noise flo
   const std::string html = page_with("average.json", stored_average());
   CHECK_THAT(html, Contains("AVERAGED") && Contains("rig &lt;b&gt;") && !Contains("rig <b>"));
   CHECK_THAT(html, Contains("start up to 2.1 ms apart") && Contains("1 repeat flagged as outlier"));
-  CHECK_THAT(html, Contains("value=\"2.5e-05\">25<") && Contains(">0.9980<"));
+  CHECK_THAT(html, Contains("value=\"2.5e-05\">25.0<") && Contains(">0.9980<"));
   CHECK_THAT(html, Contains("offset of each repeat of sine"));
   CHECK_THAT(html, Contains("position of sine, mean and standard deviation of its repeats"));
   CHECK_THAT(html, Contains("Warnings (1)") && Contains("sine: c.csv is an outlier"));
@@ -86,6 +90,24 @@ TEST_CASE("average_figures: the band is the variation between repeats", "[report
       parse_table("time_s,position_m_mean,position_m_sd,position_m_count\n0,0.01,,1\n0.1,0.02,,1\n",
                   "sine.csv");
   CHECK(average_figures("sine", single).size() == 1);
+}
+
+TEST_CASE("average_figures: no line joins the extremes of the variation between repeats",
+          "[report]") {
+  std::string text = "time_s,position_m_mean,position_m_sd,position_m_count\n";
+  for (int i = 0; i < 4000; ++i)
+    text += fmt::format("{},0.01,{},3\n", 0.01 * i, i % 7 == 0 ? 2e-5 : 1e-5);
+  const auto figures = average_figures("sine", parse_table(text, "sine.csv"));
+  REQUIRE(figures.size() == 2);
+  const Trace& sd = figures[1].plot.traces[0];
+  for (std::size_t i = 1; i < sd.x.size(); ++i) {
+    if (std::isnan(sd.y[i - 1]) || std::isnan(sd.y[i])) continue;
+    CHECK(sd.x[i - 1] == sd.x[i]);
+  }
+  CHECK(sd.x.front() >= 0.0);
+  CHECK(sd.x.back() <= 39.99);
+  CHECK(*std::max_element(sd.y.begin(), sd.y.end(), [](double a, double b) { return a < b; }) ==
+        Approx(20.0));  // in µm
 }
 
 TEST_CASE("page: an average with a name that leads elsewhere is refused", "[report]") {

@@ -4,17 +4,31 @@
 #include <catch2/catch.hpp>
 #include <cmath>
 #include <random>
+#include <utility>
+#include <vector>
 
 using namespace rigcal::report;
 using rigcal::Range;
 
 namespace {
 
-double number_of(const std::string& text) { return std::stod(text); }
+/// Returns the text with an exponent instead of a power of ten.
+std::string with_exponent(std::string text) {
+  const std::vector<std::pair<std::string, std::string>> written{
+      {"×10", "e"}, {"⁻", "-"}, {"⁰", "0"}, {"¹", "1"}, {"²", "2"}, {"³", "3"},
+      {"⁴", "4"},   {"⁵", "5"}, {"⁶", "6"}, {"⁷", "7"}, {"⁸", "8"}, {"⁹", "9"}};
+  for (const auto& [from, to] : written)
+    for (std::size_t at = 0; (at = text.find(from, at)) != std::string::npos;)
+      text.replace(at, from.size(), to);
+  return text;
+}
+
+double number_of(const std::string& text) { return std::stod(with_exponent(text)); }
 
 /// Returns the place value of the last digit in a text; for a whole number, of its last non-zero
 /// digit.
-double step_of(const std::string& text) {
+double step_of(const std::string& printed) {
+  const std::string text = with_exponent(printed);
   const std::size_t exponent = std::min(text.find('e'), text.size());
   const int power = exponent < text.size() ? std::stoi(text.substr(exponent + 1)) : 0;
   const std::string digits = text.substr(0, exponent);
@@ -27,7 +41,8 @@ double step_of(const std::string& text) {
 
 /// Returns the number of significant digits in a text.
 int significant_digits(const std::string& text) {
-  const std::string digits = text.substr(0, text.find('e'));
+  const std::string plain = with_exponent(text);
+  const std::string digits = plain.substr(0, plain.find('e'));
   int count = 0;
   bool begun = false;
   for (const char c : digits) {
@@ -46,14 +61,26 @@ TEST_CASE("estimate: the digits that its uncertainty supports, two of its own at
   CHECK(matched(168.2, 40.0) == "168");
   CHECK(matched(66.9, 5000.0) == "67");
   CHECK(matched(10.0, 1e9) == "10");
-  CHECK(matched(3.8e-13, 1.2e-13) == "3.8e-13");
-  CHECK(matched(-3.84e-13, 1.2e-14) == "-3.84e-13");
+  CHECK(matched(3.8e-13, 1.2e-13) == "3.8×10⁻¹³");
+  CHECK(matched(-3.84e-13, 1.2e-14) == "-3.84×10⁻¹³");
   CHECK(matched(0.00123456, 1e-5) == "0.001235");
-  CHECK(matched(2.5e6, 1e5) == "2.50e+06");
+  CHECK(matched(0.00079, 0.00079) == "0.00079");
+  CHECK(matched(2.5e6, 1e5) == "2.50×10⁶");
   CHECK(matched(0.0, 1.0) == "0");
   CHECK(matched(-0.0, 1.0) == "0");
   CHECK(matched(1.0 / 3.0, 0.0) == "0.333333");
   CHECK(matched(std::nan(""), 1.0) == "-");
+}
+
+TEST_CASE("uncertainty_text: the decimals of the value, not a power of ten", "[report]") {
+  CHECK(uncertainty_text(0.0000791, 0.57123) == "0.000079");
+  CHECK(uncertainty_text(0.00002, 0.998) == "0.000020");
+  CHECK(uncertainty_text(0.051, 85.0114) == "0.051");
+  CHECK(uncertainty_text(22.3, 1234.0) == "22");
+  CHECK(uncertainty_text(1.2e-13, 3.8e-13) == "1.2×10⁻¹³");
+  CHECK(uncertainty_text(1e-9, 0.5) == "1.0×10⁻⁹");  // the value has no such decimals
+  CHECK(uncertainty_text(1e-5, 0.0) == "1.0×10⁻⁵");
+  CHECK(uncertainty_text(std::nan(""), 1.0) == "-");
 }
 
 TEST_CASE("estimate: rounding crosses no bound", "[report]") {
@@ -82,7 +109,7 @@ TEST_CASE("estimate: of any value, error and bounds the text is true", "[report]
     REQUIRE(read <= allowed.high + kUnitsSlack * std::abs(allowed.high));
     REQUIRE(read != 0.0);
     REQUIRE(std::abs(read - value) < step_of(text));
-    REQUIRE(text.size() <= 13);
+    REQUIRE(with_exponent(text).size() <= 13);
     REQUIRE((significant_digits(text) >= 2));
   };
   for (int i = 0; i < 20'000; ++i) {

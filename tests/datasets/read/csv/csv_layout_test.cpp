@@ -105,6 +105,50 @@ TEST_CASE("csv_layout: units of LabVIEW's .lvm, and times that no column contain
                     Contains("Delta_X is 1e-30 s"));
 }
 
+TEST_CASE("csv_layout: a .lvm names the X_Value that it leaves empty", "[datasets]") {
+  const std::string segment =
+      "Channels\t2\t\t\t\nY_Unit_Label\tmm\tVolts\t\nX_Dimension\tTime\tTime\t\nX0\t0.5\t0.5\t\n"
+      "Delta_X\t0.1\t0.1\t\n***End_of_Header***\t\t\t\nX_Value\tPosition\tSignal\tComment\n"
+      "\t1.5\t7\t\n\t2.5\t8\n\t3.5\t9\n";
+  const std::string above =
+      "LabVIEW Measurement\t\nMulti_Headings\tYes\nX_Columns\tNo\n***End_of_Header***\t\n\t\n";
+  const ReadText lvm(above + segment);
+  CHECK(csv_record_columns(lvm.path) ==
+        std::vector<RecordColumn>{
+            {"X_Value", "s", true}, {"Position", "mm"}, {"Signal", "Volts"}, {"Comment", ""}});
+  const RecordTable table = lvm.table("X_Value", "Position");
+  CHECK(table.columns[1] == kNumbers[1]);
+  CHECK(table.columns[0].at(2) == Approx(0.7));
+  // Each segment has a beginning of its own.
+  CHECK_THROWS_WITH(ReadText(above + segment + "\n" + segment).table("X_Value", "Position"),
+                    Contains("a.txt:17:1: 'Channels") && Contains("a file of its own"));
+}
+
+TEST_CASE("csv_layout: TwinCAT Scope's pairs of time and value", "[datasets]") {
+  const std::string above =
+      "Name\tScope Project\nFile\tC:\\run.svdx\nStarttime of export\t133507764000000000\t26 "
+      "January\n"
+      "\nName\tActPos\tName\tActPres\nSymbolComment\t\tSymbolComment\t\n"
+      "SampleTime[ms]\t100\tSampleTime[ms]\t100\nUnit\tmm\tUnit\tbar\nOffset\t0\tOffset\t0\n\n";
+  const ReadText scope(above + "0\t1.5\t0\t7\n100\t2.5\t100\t8\n200\t3.5\t200\t9\n");
+  CHECK(csv_record_columns(scope.path) ==
+        std::vector<RecordColumn>{{"Time", "ms", true}, {"ActPos", "mm"}, {"ActPres", "bar"}});
+  CHECK(scope.table("Time", "ActPres").columns == NumberColumns{{0, 100, 200}, {7, 8, 9}});
+  CHECK_THROWS_WITH(ReadText(above + "0\t1\t0\t7\n100\t2\t150\t8\n").table("Time", "ActPres"),
+                    Contains("a.txt:12:7: the time of 'ActPres' is '150'"));
+  const ReadText ticks(above +
+                       "133507764000000000\t1\t133507764000000000\t7\n"
+                       "133507764001000000\t2\t133507764001000000\t8\n");
+  CHECK(csv_record_columns(ticks.path).front() == RecordColumn{"Time", "100 ns", true});
+}
+
+TEST_CASE("csv_layout: settings of each column below its name", "[datasets]") {
+  const ReadText catman(
+      "catman\nZeit [s]\tWeg [mm]\nStart: 26.01.2024\t\nRate: 10 Hz\tRate: 10 Hz\n"
+      "0\t1,5\n0,1\t2,5\n0,2\t3,5\n");
+  CHECK(catman.table("Zeit", "Weg").columns == kNumbers);
+}
+
 TEST_CASE("csv_layout: a row of units may have a label", "[datasets]") {
   const ReadText units("Name,t,x\nUnit,s,mm\n7,0,1.5\n8,0.1,2.5\n9,0.2,3.5\n");
   CHECK(units.table("t", "x").columns == kNumbers);

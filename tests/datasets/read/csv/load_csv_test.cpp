@@ -186,6 +186,40 @@ TEST_CASE("load_csv: a second header begins another recording", "[datasets]") {
              StartsWith("a.csv:4:1: the header occurs again"));
 }
 
+TEST_CASE("load_csv: a header on each page of one recording", "[datasets]") {
+  const RecordTable pages = load("t,x\n0,1\n1,2\n\nt,x\n2,3\nt,x\n3,4\n");
+  CHECK(pages.columns == NumberColumns{{0, 1, 2, 3}, {1, 2, 3, 4}});
+  CHECK_THAT(pages.warning, Contains("a.csv:5: the header occurs again, 2 times in all"));
+
+  const std::string blocks = "MTS793\n\nTimed\nt,x\ns,mm\n0,1\n1,2\n\nTimed\nt,x\ns,mm\n2,3\n3,4\n";
+  CHECK(load(blocks).columns == NumberColumns{{0, 1, 2, 3}, {1, 2, 3, 4}});
+  std::string other = blocks;
+  other.replace(other.rfind("s,mm"), 4, "s,um");
+  CHECK_THAT(refusal(other),
+             StartsWith("a.csv:11:1: the header occurs again, but the row below it"));
+}
+
+TEST_CASE("load_csv: text behind the last row", "[datasets]") {
+  const RecordTable table = load("t,x\n0,1\n1,2\n\nEnd of file\nMax,7\n");
+  CHECK(table.columns == NumberColumns{{0, 1}, {1, 2}});
+  CHECK_THAT(table.warning, Contains("a.csv:5: not read: 'End of file'"));
+  CHECK_THAT(refusal("t,x\n0,1\nstopped\n1,2\n"),
+             StartsWith("a.csv:3:1: 'stopped' inside the data, which continue in line 4"));
+  // A row that was cut off is no text.
+  CHECK_THAT(refusal("t,x\n0,1\n1\n"), StartsWith("a.csv:3:2: 1 columns; expected 2"));
+}
+
+TEST_CASE("load_csv: a time before each value", "[datasets]") {
+  CHECK(load("t,x,t,y\n0,1,0,2\n1,3,1,4\n", request({"t", "x", "y"}, "t")).columns ==
+        NumberColumns{{0, 1}, {1, 3}, {2, 4}});
+  const std::string slow = "t,x,t,y\n0,1,0,2\n1,3,2,4\n";
+  CHECK_THAT(
+      refusal(slow, request({"t", "x", "y"}, "t")),
+      StartsWith("a.csv:3:5: the time of 'y' is '2', that of 'x' is '1'; expected the same"));
+  // Times of columns that are not wanted do not matter.
+  CHECK(load(slow, request({"t", "x"}, "t")).columns == NumberColumns{{0, 1}, {1, 3}});
+}
+
 TEST_CASE("load_csv: dates whose order is assumed are told", "[datasets]") {
   const RecordTable table = load("t,x\n01/02/2024 23:59:59,1\n02/02/2024 00:00:00,2\n");
   CHECK(table.columns == NumberColumns{{0, 1}, {1, 2}});
@@ -381,12 +415,49 @@ TEST_CASE("load_csv: a file that cannot be read", "[datasets]") {
 
 TEST_CASE("load_csv: text in another encoding, and what is no text", "[datasets]") {
   using namespace std::string_literals;
-  CHECK_THAT(refusal("\xFF\xFEt\0,\0x\0\n\0"s), StartsWith("a.csv: is UTF-16 text"));
-  CHECK_THAT(refusal("\xFE\xFF\0t\0,\0x\0\n"s), StartsWith("a.csv: is UTF-16 text"));
+  // Half a character, and half of a pair of surrogates.
+  CHECK_THAT(refusal("\xFF\xFEt\0,\0x\0\n\0\x30"s),
+             StartsWith("a.csv: is UTF-16 text, but byte 11 belongs to no character"));
+  CHECK_THAT(refusal("\xFE\xFF\0t\0,\xDC\0\0x\0\n"s),
+             StartsWith("a.csv: is UTF-16 text, but byte 7 belongs to no character"));
   CHECK_THAT(refusal("t,x\n0,1\n1,\0\x32\n"s),
              StartsWith("a.csv: is a binary file (byte 11 is NUL); expected CSV text"));
   CHECK_THAT(refusal("\x89PNG\x1A\n0,1\n"), Contains("control characters"));
   CHECK_THAT(refusal("t,x\r0,1\r1,2\r"), StartsWith("a.csv:1:1: ") && Contains("carriage return"));
+}
+
+TEST_CASE("load_csv: UTF-16 with and without a byte-order mark", "[datasets]") {
+  const std::string text = "t [s]\tx [\xB5m]\n0\t1,5\n1\t2,5\n";  // Latin-1
+  for (const bool big_endian : {false, true})
+    for (const bool has_mark : {false, true}) {
+      CAPTURE(big_endian, has_mark);
+      std::string wide = !has_mark ? "" : big_endian ? "\xFE\xFF" : "\xFF\xFE";
+      for (const char c : text) {
+        const char bytes[] = {big_endian ? '\0' : c, big_endian ? c : '\0'};
+        wide.append(bytes, 2);
+      }
+      const RecordTable table = load(wide, request({"t", "x [\u00b5m]"}));
+      CHECK(table.columns == NumberColumns{{0, 1}, {1.5, 2.5}});
+    }
+}
+
+TEST_CASE("load_csv: UTF-16 longer than a block of the converter", "[datasets]") {
+  // The euro sign has two bytes in UTF-16 and three in UTF-8, so that blocks end within a line.
+  constexpr int kRows = 40'000;
+  std::string wide = "\xFF\xFE";
+  const auto append = [&wide](std::string_view ascii) {
+    for (const char c : ascii) wide.append({c, '\0'});
+  };
+  append("t,x,note\n");
+  for (int i = 0; i < kRows; ++i) {
+    append(std::to_string(i) + "," + std::to_string(i % 7) + ",");
+    wide += "\xAC\x20";
+    append("\n");
+  }
+  const RecordTable table = load(wide);
+  REQUIRE(table.columns[0].size() == kRows);
+  CHECK(table.columns[0].back() == kRows - 1);
+  CHECK(table.columns[1].back() == (kRows - 1) % 7);
 }
 
 TEST_CASE("load_csv: messages show no control characters and stay short", "[datasets]") {

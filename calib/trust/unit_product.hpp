@@ -3,7 +3,7 @@
 #include <string>
 #include <string_view>
 
-namespace rigcal {
+namespace rigcal::calib {
 
 /// Returns the unit of a * b^power in base units, such as "s" for kg (N s/m)^-1, or "1" if it has
 /// no dimension. Accepts the units of parameters: kg, m, s, rad (as 1), V, K, N and Pa, with digits
@@ -17,4 +17,4 @@ std::string unit_product(std::string_view a, std::string_view b, double power);
 /// @throws std::invalid_argument  if unit_product() does not know the unit
 double mass_exponent(std::string_view unit);
 
-}  // namespace rigcal
+}  // namespace rigcal::calib

@@ -1,4 +1,4 @@
-#include "common/unit_product.hpp"
+#include "calib/trust/unit_product.hpp"
 
 #include <fmt/format.h>
 
@@ -7,7 +7,7 @@
 #include <cmath>
 #include <stdexcept>
 
-namespace rigcal {
+namespace rigcal::calib {
 namespace {
 
 constexpr std::array<std::string_view, 5> kBase{"kg", "m", "s", "V", "K"};
@@ -79,4 +79,4 @@ std::string unit_product(std::string_view a, std::string_view b, double power) {
 static_assert(kBase.front() == "kg");
 double mass_exponent(std::string_view unit) { return exponents_of(unit).front(); }
 
-}  // namespace rigcal
+}  // namespace rigcal::calib
