@@ -66,6 +66,7 @@ class Utf16Decoder {
  public:
   Utf16Decoder(const std::string& encoding, Location where)
       : converter_(iconv_open("UTF-8", encoding.c_str())), where_(std::move(where)) {
+    // NOLINTNEXTLINE(performance-no-int-to-ptr): how POSIX defines the failure of iconv_open()
     if (converter_ == reinterpret_cast<iconv_t>(-1))
       throw InputError(where_, "is " + encoding +
                                    " text, which the C library cannot convert; "
