@@ -5,8 +5,10 @@
 #include <cmath>
 #include <limits>
 
+using rigcal::report::Bars;
 using rigcal::report::Buckets;
 using rigcal::report::buckets;
+using rigcal::report::column_bars;
 using rigcal::report::Quantised;
 using rigcal::report::quantised;
 using rigcal::report::thinned;
