@@ -62,7 +62,7 @@ constexpr double kLeastLag_s = 0.05e-3;
 constexpr double kMostLag_s = 0.5e-3;
 /// Plausible time between the start of the drive and that of the record, as a fraction of the
 /// sampling interval, and its limits.
-constexpr double kAheadShare = 0.1;
+constexpr double kAheadFraction = 0.1;
 constexpr double kLeastAhead_s = 0.02e-3;
 constexpr double kMostAhead_s = 0.1e-3;
 /// Typical range of controller periods.
@@ -117,7 +117,7 @@ constexpr std::array kCatalogue{
     CatalogueRow{"trigger", EffectKind::parameter, false, "drive ahead of its record",
                  [](const RigScale& rig) {
                    return EffectSize{
-                       std::clamp(kAheadShare * rig.sample_s, kLeastAhead_s, kMostAhead_s),
+                       std::clamp(kAheadFraction * rig.sample_s, kLeastAhead_s, kMostAhead_s),
                        "a tenth of a sampling interval"};
                  }},
     CatalogueRow{"valve_offset", EffectKind::parameter, false, "null shift of the valve",
