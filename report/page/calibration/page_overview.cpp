@@ -6,7 +6,6 @@
 #include <memory>
 #include <optional>
 
-#include "common/significant.hpp"
 #include "report/document/words.hpp"
 #include "report/figure/decimate.hpp"
 #include "report/page/calibration/fit_sections.hpp"
