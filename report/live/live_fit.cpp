@@ -6,6 +6,7 @@
 #include <cmath>
 #include <utility>
 
+#include "calib/problem/known_values.hpp"
 #include "common/error.hpp"
 #include "datasets/synthetic/model_output.hpp"
 #include "metrics/metric_table.hpp"
@@ -40,12 +41,20 @@ bool acts_in(const Estimate& p, const Condition& condition) {
          (p.scope == datasets::Scope::condition && p.level == condition.id);
 }
 
-/// Returns the values for a condition at the optimum, including nuisance parameters.
-model::ParameterValues values_at_optimum(const datasets::Campaign& campaign,
-                                         const Condition& condition, const calib::Fit& fit) {
-  model::ParameterValues values = values_in(campaign, condition);
+/// Returns the values at which a condition was scored, including nuisance parameters. In a
+/// validation, the parameters that the campaign fits have the values of an earlier fit.
+model::ParameterValues scored_values(const datasets::Campaign& campaign, const Condition& condition,
+                                     const calib::Fit& fit) {
+  std::vector<datasets::FittedValue> known;
+  for (const calib::FittedParameter& p : fit.parameters) {
+    const datasets::ParameterSetting* setting = campaign.setting(p.index);
+    const bool by_a_fit = p.fitted || (setting != nullptr && setting->fit);
+    if (by_a_fit && !p.nuisance && std::isfinite(p.value))
+      known.push_back({p.index, p.scope, p.level.value_or(""), p.value});
+  }
+  model::ParameterValues values = calib::values_with(campaign, condition, known);
   for (const calib::FittedParameter& p : fit.parameters)
-    if (is_estimate(p) && acts_in(p, condition)) values.set(p.index, p.value);
+    if (is_estimate(p) && p.nuisance && acts_in(p, condition)) values.set(p.index, p.value);
   return values;
 }
 
@@ -220,7 +229,7 @@ std::optional<Json> live_fit(const Result& result) {
     MeasuredCase found = measured_case(*score);
     if (found.channels.empty()) continue;
     cases.push_back(live_case(result.campaign, score->id, *condition,
-                              values_at_optimum(result.campaign, *condition, fit), *record));
+                              scored_values(result.campaign, *condition, fit), *record));
     if (cases.back().task.time_s != score->time_s) {
       cases.pop_back();
       continue;
@@ -289,13 +298,14 @@ std::optional<Json> live_diagnosis(const datasets::Campaign& campaign,
 std::optional<LiveSection> live_section(const Json& rig) {
   if (live_module().empty()) return std::nullopt;
   LiveSection section;
-  const char* const about =
-      rig.contains("intervals")
-          ? "The calibrated rig, simulated in this page by the equations and solver of "
-            "<code>rigcal</code>. Sliders start at the estimates, shown by a mark; the shaded "
-            "range is the 95 % interval. Scores and limits refer to the curves shown."
-          : "The rig, simulated in this page by the equations and solver of <code>rigcal</code>. "
-            "Sliders start at the values of the result, shown by a mark.";
+  const bool estimated = rig.contains("intervals");
+  const bool shaded = estimated && !rig["intervals"].empty();
+  const std::string about = fmt::format(
+      "The {}rig, simulated in this page by the equations and solver of <code>rigcal</code>. "
+      "Sliders start at the {}, shown by a mark{}.{}",
+      estimated ? "calibrated " : "", estimated ? "estimates" : "values of the result",
+      shaded ? "; the shaded range is the 95 % interval" : "",
+      estimated ? " Scores and limits refer to the curves shown." : "");
   section.html = fmt::format(
       "<style>{}</style>\n<section id=\"try\" class=\"screen\" aria-labelledby=\"try-title\">\n"
       "<h2 id=\"try-title\">Try it</h2>\n<p class=\"reading\">{}</p>\n{}</section>\n\n",
