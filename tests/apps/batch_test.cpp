@@ -128,7 +128,7 @@ TEST_CASE("batch: a second one makes only what has changed", "[apps]") {
   CHECK_THAT(folder.read("out/bench_1/fit.json"), Contains("\"profile\""));
 }
 
-TEST_CASE("batch: a leak that grows is a significant trend of its rig alone", "[apps]") {
+TEST_CASE("batch: a leak that grows is a significant trend of its rig alone", "[apps][long]") {
   const CommandFolder folder;
   folder.write("none", "");
   std::vector<std::string> last{"batch", "month_4", "--out", "out_4", "--diagnose"};

@@ -158,7 +158,8 @@ TEST_CASE("resume: a fit that was killed in what it makes beside the search lose
   CHECK_FALSE(folder.has("parts/checkpoint.tasks"));
 }
 
-TEST_CASE("resume: chains of a posterior that were killed go on to the same draws", "[apps]") {
+TEST_CASE("resume: chains of a posterior that were killed go on to the same draws",
+          "[apps][long]") {
   const CommandFolder folder;
   REQUIRE(write_quick_twin(folder).exit_code == 0);
   const CommandFolder::Arguments whole{

@@ -83,7 +83,7 @@ TEST_CASE("excavator: angle and both pressures of the arm, in", "[calib][long]")
   CHECK(least_rho2(*arm, datasets::Channel::pressure_b) > 0.93);
 }
 
-TEST_CASE("excavator: angle and both pressures of the boom, down", "[calib]") {
+TEST_CASE("excavator: angle and both pressures of the boom, down", "[calib][long]") {
   const auto boom = fitted("boom_down");
   if (!boom) return;
   CHECK(boom->conditions.size() == 3);
@@ -92,7 +92,7 @@ TEST_CASE("excavator: angle and both pressures of the boom, down", "[calib]") {
   CHECK(least_rho2(*boom, datasets::Channel::pressure_b) > 0.83);
 }
 
-TEST_CASE("excavator: the duty of a record that was held back", "[calib]") {
+TEST_CASE("excavator: the duty of a record that was held back", "[calib][long]") {
   using Channel = datasets::Channel;
   struct Row {
     const char* rig;

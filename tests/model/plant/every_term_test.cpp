@@ -988,7 +988,7 @@ TEST_CASE("every term: rigs with all terms follow an integrator of another kind"
   }
 }
 
-TEST_CASE("every term: no row of a plant is left out of the comparison", "[model]") {
+TEST_CASE("every term: no row of a plant is left out of the comparison", "[model][long]") {
   constexpr double kChange = 1.2;
   std::array<std::set<std::string_view>, 3> compared;  // by plant
   for (const TermCase& each : all_term_cases()) {
